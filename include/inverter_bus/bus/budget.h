@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_BUDGET_H
+#define INVERTER_BUS_BUS_BUDGET_H
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/bus/types.h"
+#include "inverter_bus/bus/configuration.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What the bus can do, computed before anything is sent (contract, rule 3.11): every exchange has a cost on the wire.
+/// The drives' own processing time is not known before they answer; the figures are the wire's limit. Pure.
+class Budget
+{
+public:
+  Budget(const Configuration& configuration, const wire::Line& line);
+
+  /// One status cycle of all inverters without commands, slow values included in proportion.
+  Duration cycle() const;
+  /// Acceptance of a stop to the last bit of its frame: the longest exchange in flight, unanswered, then the frame.
+  Duration worstStop() const;
+  /// Longest time between two frames to the same inverter: every refresh alternates with a command, and one exchange of
+  /// the cycle is lost.
+  Duration longestGap() const;
+  /// The longest exchange in use, unanswered.
+  Duration longestExchange() const;
+
+  /// Lines for the log: the figures, and WARN where a time-out can't be met.
+  std::vector<Finding> findings() const;
+  /// WARN if a drive's own \p timeout can't be met.
+  std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout) const;
+
+private:
+  Duration refreshCost(std::size_t index) const;
+  std::vector<wire::Request> requests(std::size_t index) const;
+
+  const Configuration& configuration_;
+  const wire::Line& line_;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_BUDGET_H

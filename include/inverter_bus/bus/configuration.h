@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_CONFIGURATION_H
+#define INVERTER_BUS_BUS_CONFIGURATION_H
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/drive/drive.h"
+#include "inverter_bus/wire/serial_port.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// A configuration value as it came from the parameter server or from a YAML file, before anybody judged it.
+struct Value
+{
+  enum class Type
+  {
+    None,
+    Boolean,
+    Integer,
+    Number,
+    Text,
+    List,
+    Map
+  };
+  Type type = Type::None;
+  bool boolean = false;
+  std::int64_t integer = 0;
+  double number = 0.0;
+  std::string text;
+  std::vector<Value> list;
+  std::map<std::string, Value> map;
+};
+
+/// A scan list file as a tree. \throws drive::ConfigurationError with file and line.
+Value readYamlFile(const std::string& path);
+
+/// One inverter of the scan list. Times in seconds, velocities in the user's unit.
+struct InverterConfig
+{
+  std::string name;
+  std::uint8_t node = 0;
+  std::string drive;
+  double hz_per_unit = 1.0;
+  double max_velocity = 0.0;  ///< resolved: never above the profile's maximum / |hz_per_unit|
+  double min_velocity = 0.0;
+  double command_timeout = 0.5;   ///< 0: never
+  double response_timeout = 0.1;  ///< resolved: entry, profile, bus
+  std::optional<double> rated_current;
+  std::optional<double> rated_voltage;
+  bool configure_block = false;
+  std::vector<int> block_read{ 1, 2, 3, 4, 14 };
+  bool stop_unexpected_motion = false;
+  bool release_on_exit = false;
+  drive::ProfileChanges changes;
+};
+
+/// The private parameters of the node.
+struct BusConfig
+{
+  std::string port = "/dev/ttyUSB0";
+  std::string protocol = "modbus_rtu";
+  wire::SerialSettings serial;
+  double interval = 0.0;  ///< [s] 0-655.35
+  double response_timeout = 0.1;
+  int retries = 1;
+  int offline_after = 3;
+  bool exclusive = true;
+  int realtime_priority = 0;
+  int idle_divisor = 1;
+  bool parameters_read_only = false;
+  std::string trace_directory = "~/.ros/inverter_bus";
+  /// In node order.
+  std::vector<InverterConfig> inverters;
+};
+
+/// A judged configuration and the drives that belong to it, in the same order.
+struct Configuration
+{
+  BusConfig bus;
+  std::vector<drive::Drive> drives;
+};
+
+/// Judges the node's parameters (contract, section 2). \p place names the source in messages ("~" for ROS parameters or a
+/// file), \p profile_directory holds the profiles.
+/// \throws drive::ConfigurationError one line: key, value, place, what is allowed
+Configuration readConfiguration(const Value& parameters, const std::string& place, const std::string& profile_directory);
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_CONFIGURATION_H

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_COORDINATOR_H
+#define INVERTER_BUS_BUS_COORDINATOR_H
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inverter_bus/bus/bus.h"
+#include "inverter_bus/bus/inverter.h"
+#include "inverter_bus/bus/jobs.h"
+#include "inverter_bus/bus/load_meter.h"
+#include "inverter_bus/bus/scheduler.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What the bus wants to tell the world after a step; delivered with no lock held.
+struct Outputs
+{
+  std::vector<InverterStatus> statuses;
+  std::vector<BusStatus> bus_statuses;
+  std::vector<Finding> log;
+  /// Reasons to write the flight recorder.
+  std::vector<std::string> traces;
+};
+
+using PendingAnswers = std::vector<std::pair<AnswerCallback, Answer>>;
+
+/// Joins scheduler, interlocks and inverters: requests come in, the next exchange goes out, its reply comes back. Time comes
+/// in as an argument; there is no thread, no clock and no I/O in it, so that the whole behaviour of a bus can be run in
+/// virtual time. Not thread safe: the bus guards it with one mutex.
+class Coordinator
+{
+public:
+  /// \p configuration and \p line must outlive the coordinator; of the line only questions without side effects are asked.
+  Coordinator(const Configuration& configuration, const wire::Line& line);
+  ~Coordinator();
+
+  // --- requests of users --------------------------------------------------------------------------------------------
+  std::uint16_t command(TimePoint now, const VelocityCommand& command);
+  /// A malformed command: shows in the status of \p indices and, for a group, in the bus status.
+  void refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text,
+              bool group);
+  void stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback);
+  void reset(TimePoint now, std::size_t index, AnswerCallback callback);
+  void readFaults(TimePoint now, std::size_t index, AnswerCallback callback);
+  void readParameter(TimePoint now, std::size_t index, const std::string& name, AnswerCallback callback);
+  void writeParameter(TimePoint now, std::size_t index, const std::string& name, double value, bool persist,
+                      AnswerCallback callback);
+
+  // --- the bus loop -------------------------------------------------------------------------------------------------
+  struct Exchange
+  {
+    wire::Request request;
+    /// Silence to keep after a broadcast.
+    Duration turnaround{ 0 };
+  };
+  /// The next exchange to make right now; nothing: ask again at \p wake or when something was requested.
+  std::optional<Exchange> next(TimePoint now, TimePoint& wake);
+  /// What time alone brings: dead men, bounds, slow publications. Also while the port is closed.
+  void tick(TimePoint now);
+  /// The first byte of that exchange is leaving now.
+  void sent(TimePoint now);
+  /// Its end.
+  void done(const wire::Reply& reply);
+
+  /// A reply that came after its time-out: its station is alive.
+  void lateReply(TimePoint now, const wire::LateReply& late);
+  /// What the line has counted so far; kept as a copy, since others ask for it while the line is in use.
+  void noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found);
+
+  void portOpened(TimePoint now);
+  /// \p in_use: another process holds it.
+  void portMissing(TimePoint now, const std::string& error, bool in_use);
+  void portLost(TimePoint now);
+
+  void beginShutdown(TimePoint now);
+  /// All motors confirmed, or the time is up.
+  bool shutdownDone(TimePoint now);
+  /// Answers whoever still waits with 0xB003; names what could not be confirmed.
+  std::vector<std::string> endShutdown();
+
+  // --- what it tells ------------------------------------------------------------------------------------------------
+  Outputs takeOutputs();
+  PendingAnswers takeAnswers();
+  Report report(TimePoint now) const;
+  ServiceBounds bounds() const;
+  std::vector<Finding> budget() const;
+
+private:
+  enum class Purpose
+  {
+    StopFrame,
+    Broadcast,
+    Velocity,
+    Job,
+    Refresh,
+    Probe,
+    Setting,
+    Release
+  };
+  struct Current
+  {
+    Pick pick;
+    Purpose purpose = Purpose::Refresh;
+    std::size_t inverter = 0;
+    wire::Request request;
+    /// A loop-back that makes sure that no late reply is on its way; the real request follows.
+    bool resync = false;
+    Write write;
+    CommandId job = 0;
+  };
+  struct RunningJob
+  {
+    std::unique_ptr<Job> job;
+    std::size_t inverter;
+    TimePoint expires;
+    AnswerCallback callback;
+    int tries = 0;
+  };
+  struct StopCall
+  {
+    std::vector<std::size_t> waiting;
+    std::vector<std::string> problems;
+    std::uint16_t error_id = 0;
+    std::string note;
+    TimePoint expires;
+    AnswerCallback callback;
+  };
+
+  // velocity
+  std::uint16_t judgeGroup(TimePoint now, const VelocityCommand& command, std::vector<JudgedVelocity>& judged,
+                           bool& repeat);
+  std::uint16_t judgeOne(TimePoint now, std::size_t index, const Publisher& publisher, JudgedVelocity& judged) const;
+  void applyVelocities(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
+                       bool refused);
+  bool applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
+  bool applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
+
+  // stops
+  void requestStop(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
+  void stopConfirmed(TimePoint now, Inverter& inverter);
+  void finishStopCalls(TimePoint now);
+  bool broadcastIsSafe() const;
+  std::string stopProblem(const Inverter& inverter) const;
+
+  // jobs
+  std::uint16_t judgeWrite(const Inverter& inverter, const std::string& name, double value, bool persist,
+                           std::string& why, std::uint32_t& raw) const;
+  void startJob(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound, AnswerCallback callback);
+  bool refuseJob(std::size_t index, const AnswerCallback& callback);
+  void queueJob(CommandId id, TimePoint not_before);
+  void advanceJob(TimePoint now, CommandId id, Job::Progress progress);
+  void endJob(CommandId id, const Answer& answer);
+  void failJobs(std::size_t index, std::uint16_t error_id, const std::string& message);
+  void answer(const AnswerCallback& callback, const Answer& answer);
+  void refuseCall(const AnswerCallback& callback, std::uint16_t error_id, const std::string& message);
+
+  // loop
+  void watchDeadMen(TimePoint now);
+  void expireJobs(TimePoint now);
+  void publishSlowly(TimePoint now);
+  std::vector<InverterView> views(TimePoint now) const;
+  std::optional<Current> composeBroadcast();
+  bool releaseDue(const Inverter& inverter) const;
+  void noteStopLatency(Duration latency);
+  Pick pickShutdown(TimePoint now);
+  std::optional<Current> compose(TimePoint now, const Pick& pick);
+  std::optional<Current> composeVelocity(const Pick& pick);
+  std::optional<Current> composeJob(const Pick& pick);
+  Current composeProbe(const Pick& pick);
+  bool makeSafe(TimePoint now, Current& current);
+  Duration probeTimeout(const Inverter& inverter) const;
+  TimePoint earliestDeadMan(TimePoint wake) const;
+
+  void finishExchange(const Current& current, const wire::Reply& reply, bool more);
+  void doneStop(const Current& current, const wire::Reply& reply);
+  void doneVelocity(const Current& current, const wire::Reply& reply);
+  void finishVelocity(const Current& current, const wire::Reply& reply);
+  void doneJob(const Current& current, const wire::Reply& reply);
+  void doneRefresh(const Current& current, const wire::Reply& reply);
+  void doneSetting(const Current& current, const wire::Reply& reply);
+  bool repeat(int& tries, const wire::Reply& reply) const;
+  void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void judgeRefresh(TimePoint now, Inverter& inverter);
+  void publish(TimePoint now, const Inverter& inverter);
+  BusStatus busStatus(TimePoint now) const;
+  void log(Level level, const std::string& text);
+
+  const Configuration& configuration_;
+  const wire::Line& line_;
+  std::vector<std::unique_ptr<Inverter>> inverters_;
+  std::unique_ptr<Scheduler> scheduler_;
+  LoadMeter meter_;
+
+  std::optional<Current> current_;
+  std::map<CommandId, RunningJob> jobs_;
+  std::vector<StopCall> stop_calls_;
+  CommandId next_command_ = 1;
+  std::uint16_t loopback_number_ = 0;
+
+  bool connected_ = false;
+  bool port_complained_ = false;
+  std::string port_error_;
+  std::uint64_t reconnects_ = 0;
+  bool ever_opened_ = false;
+  Duration stop_latency_max_{ 0 };
+  Duration longest_exchange_{ 0 };
+  std::uint16_t last_error_ = 0;
+  std::uint16_t group_error_ = 0;
+  std::uint8_t last_node_ = 0;
+  wire::LineCounters counters_;
+  bool echo_found_ = false;
+  TimePoint foreign_at_;
+
+  TimePoint last_bus_status_;
+  std::uint64_t published_cycle_ = 0;
+  std::vector<TimePoint> last_published_;
+
+  bool shutting_down_ = false;
+  TimePoint shutdown_deadline_;
+  std::vector<bool> shutdown_tried_;
+  std::vector<bool> released_;
+  bool broadcast_due_ = false;
+  TimePoint broadcast_requested_;
+
+  Outputs outputs_;
+  PendingAnswers answers_;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_COORDINATOR_H

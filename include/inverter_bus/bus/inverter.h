@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_INVERTER_H
+#define INVERTER_BUS_BUS_INVERTER_H
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inverter_bus/bus/drive_settings.h"
+#include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/movement.h"
+#include "inverter_bus/bus/refresh.h"
+#include "inverter_bus/bus/scheduler.h"
+#include "inverter_bus/bus/stop_job.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What a complete refresh means for safety. The coordinator acts on it.
+struct Judgement
+{
+  /// Stop the inverter and lock it; empty: no reason to.
+  std::string stop_reason;
+  /// RUN is on although a command of 0 took it off: insist, without a lock.
+  bool zero_failed = false;
+  /// The trip is new.
+  bool tripped = false;
+};
+
+/// One inverter of the bus: its parts, its link, and what its words mean together.
+class Inverter
+{
+public:
+  Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after);
+
+  // --- parts ------------------------------------------------------------------------------------------------------
+  const std::size_t index;
+  const InverterConfig& config;
+  const drive::Drive& drive;
+  Interlock interlock;
+  Movement movement;
+  StopJob stop;
+  Refresh refresh;
+  DriveSettings settings;
+  std::set<std::string> ram_changes;
+
+  // --- link -------------------------------------------------------------------------------------------------------
+  /// A valid reply came. Returns true if the inverter was offline or unknown before.
+  bool answered(const wire::Reply& reply);
+  /// An exchange failed after its repeats. Returns true if the inverter has just gone offline.
+  bool failed(TimePoint now, std::uint16_t error_id);
+  /// The port is gone, or the inverter is given up: offline at once.
+  void goOffline(std::uint16_t error_id);
+  bool offline() const;
+  /// A complete status has come since start or return.
+  bool known() const;
+  /// Silence up to this time is expected (after a trip reset).
+  void expectSilence(TimePoint until);
+
+  wire::Request prepared(wire::Request request) const;
+  /// The question that shows whether an offline drive is back.
+  wire::Request probe(std::uint16_t number, Duration response_timeout) const;
+  /// Longest turnaround seen while the drive answered.
+  Duration slowestReply() const;
+  void lateReply(Duration delay);
+
+  // --- status -----------------------------------------------------------------------------------------------------
+  /// After a complete refresh.
+  Judgement judge(TimePoint now);
+  InverterStatus status(TimePoint now) const;
+  std::vector<Finding> findings(TimePoint now) const;
+  std::vector<std::pair<std::string, std::string>> values(TimePoint now) const;
+  InverterView view(TimePoint now, Duration longest_exchange) const;
+
+  void refuseCommand(std::uint16_t error_id, const std::string& text);
+  void acceptCommand();
+  void noteExchangeError(std::uint16_t error_id);
+
+  bool reset_active = false;
+  TimePoint refresh_not_before;
+  int refresh_tries = 0;
+  int velocity_tries = 0;
+  /// Frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
+  unsigned velocity_frames = 0;
+  int settings_tries = 0;
+  unsigned probes = 0;
+
+private:
+  void judgeRun(const drive::Monitor& monitor, Judgement& judgement);
+  void judgeOperation(TimePoint now, const drive::Monitor& monitor, Judgement& judgement);
+  void compareMovement(TimePoint now, const drive::Monitor& monitor);
+  std::vector<Finding> errors() const;
+
+  int offline_after_;
+  bool known_ = false;  ///< a complete status has come since start or return
+  bool offline_ = false;
+  int failures_ = 0;
+  std::uint16_t exchange_error_ = 0;
+  std::uint16_t command_error_ = 0;
+  std::string command_error_text_;
+  TimePoint last_reply_;
+  bool ever_answered_ = false;
+  TimePoint silence_until_;
+  Duration slowest_reply_{ 0 };
+  Duration latest_late_reply_{ 0 };
+  std::uint64_t returns_ = 0;
+
+  // commanded against actual
+  bool operation_seen_ = false;
+  std::optional<TimePoint> operation_off_since_;
+  bool at_rest_seen_ = true;
+  std::optional<TimePoint> idle_since_;
+  std::optional<TimePoint> wrong_direction_since_;
+  std::optional<TimePoint> deviates_since_;
+  double last_frequency_ = 0.0;
+  bool unexpected_motion_ = false;
+  bool leftover_judged_ = false;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_INVERTER_H

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_JOBS_H
+#define INVERTER_BUS_BUS_JOBS_H
+
+#include <cstddef>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "inverter_bus/bus/scheduler.h"
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// A service call that needs exchanges with one drive. A job is a sequence of single exchanges; the scheduler puts other
+/// things between them. It ends with an answer, at the latest when its bound is over.
+class Job
+{
+public:
+  enum class Progress
+  {
+    /// Queue the next exchange, after pause().
+    GoesOn,
+    /// RUN must be confirmed off before this job may send anything further: stop the inverter, then ask again.
+    NeedsStop,
+    /// answer() is complete.
+    Done
+  };
+
+  Job(const drive::Drive& drive, std::uint8_t station, CommandKind kind);
+  virtual ~Job() = default;
+
+  virtual wire::Request next() = 0;
+  /// A valid reply or an exception.
+  virtual Progress done(const wire::Reply& reply) = 0;
+  /// Lost after its repeats. Ends the job unless a subclass knows better.
+  virtual Progress lost(const wire::Reply& reply);
+
+  CommandKind kind() const;
+  Duration pause() const;
+  Answer& answer();
+
+protected:
+  Progress fail(std::uint16_t error_id, const std::string& message);
+  Progress succeed(const std::string& message);
+  Progress refusedByDrive(const wire::Reply& reply, const std::string& what);
+
+  const drive::Drive& drive_;
+  const std::uint8_t station_;
+  Duration pause_{ 0 };
+
+private:
+  const CommandKind kind_;
+  Answer answer_;
+};
+
+/// Clears a trip. Sends nothing that could start a motor: RUN is read back as off directly before the reset.
+class ResetJob : public Job
+{
+public:
+  ResetJob(const drive::Drive& drive, std::uint8_t station);
+  wire::Request next() override;
+  Progress done(const wire::Reply& reply) override;
+  Progress lost(const wire::Reply& reply) override;
+  /// A reset frame has left: the drive may be deaf for a while and has forgotten its words.
+  bool resetting() const;
+
+private:
+  enum class Phase
+  {
+    CheckRun,
+    Steps,
+    Verify
+  };
+  const drive::ReadBlock& verifyBlock() const;
+
+  Phase phase_;
+  std::size_t step_ = 0;
+  bool run_was_on_ = false;
+};
+
+class ReadFaultsJob : public Job
+{
+public:
+  ReadFaultsJob(const drive::Drive& drive, std::uint8_t station, bool faulted);
+  wire::Request next() override;
+  Progress done(const wire::Reply& reply) override;
+
+private:
+  Progress finish();
+
+  bool faulted_;
+  std::size_t entry_ = 0;
+  std::size_t read_ = 0;
+  std::vector<drive::ReadBlock> reads_;
+  drive::FaultRecord record_;
+};
+
+class ReadParameterJob : public Job
+{
+public:
+  ReadParameterJob(const drive::Drive& drive, std::uint8_t station, const drive::Parameter& parameter);
+  wire::Request next() override;
+  Progress done(const wire::Reply& reply) override;
+
+private:
+  drive::Parameter parameter_;
+};
+
+/// Writes a parameter; with persist, stores every RAM change of the drive and waits until its EEPROM is done.
+class WriteParameterJob : public Job
+{
+public:
+  /// \p ram_changes names of the parameters written to RAM through this node since the last store; kept up to date.
+  WriteParameterJob(const drive::Drive& drive, std::uint8_t station, const drive::Parameter& parameter,
+                    std::uint32_t raw, bool persist, std::set<std::string>& ram_changes);
+  wire::Request next() override;
+  Progress done(const wire::Reply& reply) override;
+  const drive::Parameter& parameter() const;
+
+private:
+  enum class Phase
+  {
+    Write,
+    Store,
+    Busy
+  };
+  Progress stored();
+
+  drive::Parameter parameter_;
+  std::uint32_t raw_;
+  bool persist_;
+  std::set<std::string>& ram_changes_;
+  Phase phase_ = Phase::Write;
+  std::size_t step_ = 0;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_JOBS_H

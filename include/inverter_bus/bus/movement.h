@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_MOVEMENT_H
+#define INVERTER_BUS_BUS_MOVEMENT_H
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "inverter_bus/bus/configuration.h"
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What an accepted velocity command wants of the drive.
+struct Target
+{
+  /// A command of 0: RUN off, nothing else.
+  bool zero = false;
+  bool reverse = false;
+  /// Set-point in counts of the drive.
+  std::uint32_t counts = 0;
+  /// As commanded, in the user's unit.
+  double velocity = 0.0;
+};
+
+/// A velocity that was judged: a target, or the reason why not.
+struct JudgedVelocity
+{
+  std::uint16_t error_id = 0;
+  std::string text;
+  Target target;
+};
+
+/// One frame of a velocity command.
+struct Write
+{
+  std::string point;
+  std::uint32_t raw = 0;
+  wire::Request request;
+  /// Puts RUN on: from its first byte on the motor counts as running.
+  bool starts = false;
+};
+
+/// The way from an accepted velocity to the words that the drive has confirmed (contract, sections 2 and 3.5): sends what
+/// differs, in the order of the profile's sequence, and nothing that is confirmed already. A newer target simply replaces
+/// the older one, also between two frames.
+class Movement
+{
+public:
+  Movement(const drive::Drive& drive, const InverterConfig& config);
+
+  /// Range and arming (A000, B004, B006); no state.
+  JudgedVelocity judge(double velocity) const;
+
+  void aim(const Target& target);
+  /// Drops the target: a stop, a fault, the inverter offline.
+  void drop();
+  const std::optional<Target>& target() const;
+  /// An accepted command has not been confirmed yet.
+  bool active() const;
+
+  /// The next frame towards the target; nothing: all confirmed.
+  std::optional<Write> next() const;
+  void sent(const Write& write);
+  void confirmed(const Write& write, TimePoint now);
+  /// No valid answer: nobody knows whether the drive took it.
+  void doubtful(const Write& write);
+  /// The command failed: nothing more is sent for it. A motor that runs goes on as it was.
+  void giveUp();
+
+  /// The drive has confirmed that RUN is off. The next start writes everything anew: a drive that was switched off
+  /// meanwhile has forgotten its set-point.
+  void stopped(TimePoint now);
+  /// A stop frame was acknowledged, but RUN has not been seen off yet.
+  void forgetWords();
+
+  /// Last RUN sent.
+  bool runCommand() const;
+  /// RUN may be on: a RUN frame has left and no stop was confirmed since.
+  bool runPossible() const;
+  /// RUN was acknowledged and is in force.
+  bool runConfirmed() const;
+  /// When RUN was last changed by us; evidence from requests before it says nothing about it.
+  TimePoint runChangedAt() const;
+  /// A command of 0 was acknowledged: the next status decides whether RUN is off.
+  bool zeroUnverified() const;
+
+private:
+  const std::string& sequenceName() const;
+
+  const drive::Drive& drive_;
+  const InverterConfig& config_;
+  std::map<std::string, std::uint32_t> stop_values_;
+  std::map<std::string, std::uint32_t> words_;
+  std::optional<Target> target_;
+  bool active_ = false;
+  bool run_command_ = false;
+  bool run_possible_ = false;
+  bool run_confirmed_ = false;
+  bool zero_unverified_ = false;
+  TimePoint run_changed_at_;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_MOVEMENT_H

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_REFRESH_H
+#define INVERTER_BUS_BUS_REFRESH_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// The status refresh of one inverter: which read is next, and what the drive has said so far with the time of each word.
+///
+/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and at most one slow block that is
+/// due. Values belong to the stamp only if they came in one refresh; slow ones leave the status when they are older than
+/// one second (contract, section 2).
+class Refresh
+{
+public:
+  Refresh(const drive::Drive& drive, std::uint8_t station);
+
+  /// The read that is due; starts a new refresh when none is under way. \p cycle_time tells how soon the next one comes.
+  const drive::ReadBlock& next(TimePoint now, Duration cycle_time);
+
+  /// The answer to next(). Returns true when the refresh needs another exchange.
+  bool received(const wire::Reply& reply);
+  /// The drive refused the read (exception): a block of several values is split, a single value is left out for a while.
+  bool refused(const wire::Reply& reply);
+  /// The read failed after its repeats: this refresh ends without a result.
+  void failed();
+
+  /// True after the last read of a refresh, once.
+  bool takeComplete();
+  /// Everything that may be shown at \p now.
+  drive::Monitor monitor(TimePoint now) const;
+  /// The run words of the last complete refresh and when their request left.
+  const drive::Monitor& fresh() const;
+  TimePoint freshSentAt() const;
+  TimePoint stamp() const;
+  bool hasStamp() const;
+  /// Nothing that was read counts any more (inverter offline).
+  void forget();
+  /// All blocks of one refresh without slow ones, for costs.
+  std::vector<drive::ReadBlock> fastBlocks() const;
+  /// Slow blocks in use.
+  std::vector<drive::ReadBlock> slowBlocks() const;
+
+private:
+  enum class Class
+  {
+    Fast,
+    Fault,
+    Slow
+  };
+  struct Block
+  {
+    drive::ReadBlock read;
+    Class kind;
+    TimePoint last;
+    bool ever = false;
+    TimePoint left_out_until;
+    drive::Monitor values;
+  };
+  void plan(TimePoint now, Duration cycle_time);
+  void planFaultReads();
+  bool advance();
+
+  const drive::Drive& drive_;
+  std::uint8_t station_;
+  std::vector<Block> blocks_;
+  std::vector<std::size_t> plan_;
+  std::size_t position_ = 0;
+  std::size_t slow_cursor_ = 0;
+  drive::Monitor scratch_;
+  TimePoint scratch_sent_at_;
+  TimePoint scratch_time_;
+  bool fault_planned_ = false;
+  drive::Monitor fresh_;
+  TimePoint fresh_sent_at_;
+  TimePoint stamp_;
+  bool has_stamp_ = false;
+  bool complete_ = false;
+};
+
+/// Splits a read in two at the widest gap between its values; a block of one value stays as it is.
+std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive::ReadBlock& block);
+
+/// Adds what \p from knows to \p to.
+void mergeMonitor(const drive::Monitor& from, drive::Monitor& to);
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_REFRESH_H

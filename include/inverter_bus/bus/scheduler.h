@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_SCHEDULER_H
+#define INVERTER_BUS_BUS_SCHEDULER_H
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "inverter_bus/wire/clock.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// Kinds of commands in the order in which those of one exchange go (INV003: one kind after the other).
+enum class CommandKind
+{
+  Velocity,
+  Reset,
+  ReadFaults,
+  ReadParameter,
+  WriteParameter
+};
+
+using CommandId = std::uint64_t;
+
+/// A command that waits for its next exchange.
+struct WaitingCommand
+{
+  CommandId id = 0;
+  CommandKind kind = CommandKind::Velocity;
+  /// Inverters in node order; several for a grouped velocity.
+  std::vector<std::size_t> inverters;
+  /// Contains a velocity of 0: goes before every other command, since somebody wants something to stop.
+  bool urgent = false;
+  /// Not before this time (a pause between two frames of one command).
+  TimePoint not_before;
+};
+
+/// What the scheduler must know of an inverter for one decision. The order of inverters is node order.
+struct InverterView
+{
+  bool offline = false;
+  /// Neither running nor commanded (idle_divisor).
+  bool at_rest = false;
+  /// Its commands other than velocities wait until the stop is confirmed (rule 3.2).
+  bool stop_pending = false;
+  /// Complete attempts at the pending stop that failed.
+  unsigned stop_attempts = 0;
+  /// The stop is written and only its read-back is due.
+  bool stop_written = false;
+  /// No exchange before this time (the reply of an earlier one could be taken for its answer).
+  TimePoint refresh_not_before;
+  /// Latest start of the next exchange if the drive's own communication time-out shall not strike.
+  std::optional<TimePoint> serve_by;
+  /// Single exchanges of long jobs wait (settings to be read).
+  bool background = false;
+};
+
+/// The scheduler's decision.
+struct Pick
+{
+  enum class What
+  {
+    /// Nothing to send before \ref wake.
+    Nothing,
+    /// The stop of an inverter (its write, its read-back, or as the probe of an offline one).
+    Stop,
+    /// A frame of the command \ref command.
+    Command,
+    Refresh,
+    /// Is an offline inverter back?
+    Probe,
+    /// One exchange of a long job.
+    Background
+  };
+  What what = What::Nothing;
+  std::size_t inverter = 0;
+  CommandId command = 0;
+  /// Paid from the probes' share of the bus time.
+  bool probe = false;
+  TimePoint wake;
+};
+
+/// Who goes next on the bus (contract, section 3). Pure: time comes in as an argument, a decision goes out; no clock, no
+/// thread, no I/O. Equal claims are decided by node order, so a run can be repeated exactly.
+///
+/// Order: stops; urgent commands (a 0); the rest of a velocity unit under way; drives whose own time-out is near; the
+/// long jobs' eighth exchange; commands alternating with refreshes; probes within their share; refreshes; long jobs.
+class Scheduler
+{
+public:
+  struct Settings
+  {
+    std::size_t inverters = 0;
+    /// Pause after each status cycle.
+    Duration interval{ 0 };
+    /// Inverters at rest take part in every n-th cycle only.
+    unsigned idle_divisor = 1;
+    /// Share of the bus time that probes of offline inverters may take.
+    double probe_share = 0.05;
+  };
+
+  explicit Scheduler(const Settings& settings);
+
+  // --- commands -----------------------------------------------------------------------------------------------------
+  /// Queues a command's next frame. Those queued before the same next() start together.
+  /// A velocity for an inverter that has one waiting takes that one's place (the group takes the earliest place).
+  void push(const WaitingCommand& command);
+  /// Takes a command out, or one inverter out of a grouped velocity.
+  void erase(CommandId id);
+  void eraseVelocity(std::size_t inverter);
+  void makeUrgent(std::size_t inverter);
+  void postpone(CommandId id, TimePoint not_before);
+  bool velocityWaits(std::size_t inverter) const;
+  /// Inverters that a waiting velocity still has to serve, in node order; empty: no such command.
+  std::vector<std::size_t> members(CommandId id) const;
+
+  // --- decisions ----------------------------------------------------------------------------------------------------
+  /// The next exchange, or when to ask again.
+  Pick next(TimePoint now, const std::vector<InverterView>& views);
+
+  /// Books the end of the exchange that was picked.
+  /// \param more Refresh: the inverter's refresh needs another exchange. Command (velocity): its unit goes on.
+  /// \param answered a reply came (a probe that is answered costs nothing of the probes' share).
+  void done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered);
+
+  /// A velocity unit that was cut short (stop, offline) goes on no more.
+  void endUnit(CommandId id);
+
+  // --- cycle --------------------------------------------------------------------------------------------------------
+  /// Complete status cycles so far.
+  std::uint64_t cycles() const;
+  /// Duration of the last one, without the interval's pause.
+  Duration cycleTime() const;
+  /// The interval's pause had to be cut short for a drive's own time-out.
+  bool pauseWasCut() const;
+  /// Exchanges so far.
+  std::uint64_t exchanges() const;
+  /// The whole bus starts afresh (port opened again).
+  void restartCycle(TimePoint now);
+
+private:
+  struct Ticket
+  {
+    WaitingCommand command;
+    std::uint64_t epoch;
+    std::uint64_t sequence;
+  };
+  std::optional<Pick> pickStop(const std::vector<InverterView>& views) const;
+  std::optional<Pick> pickDeadline(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> pickCommand(TimePoint now, bool urgent_only) const;
+  std::optional<Pick> pickProbe(TimePoint now, const std::vector<InverterView>& views) const;
+  std::optional<Pick> pickRefresh(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> pickBackground(const std::vector<InverterView>& views) const;
+  Pick nothing(TimePoint now, const std::vector<InverterView>& views) const;
+  bool takesPart(const InverterView& view) const;
+  bool findNextOfCycle(TimePoint now, const std::vector<InverterView>& views);
+  void closeCycle(TimePoint now);
+  Pick choose(TimePoint now, const std::vector<InverterView>& views);
+  void bookStop(const Pick& pick, const std::vector<InverterView>& views);
+  std::size_t readyCommands(TimePoint now) const;
+  bool ready(const Ticket& ticket, TimePoint now) const;
+  const Ticket* firstReady(TimePoint now, bool urgent_only) const;
+  std::deque<Ticket>::iterator find(CommandId id);
+
+  Settings settings_;
+  std::deque<Ticket> tickets_;
+  std::uint64_t sequence_ = 0;
+  std::uint64_t epoch_ = 0;
+  std::uint64_t exchanges_ = 0;
+
+  // stops
+  std::vector<bool> stop_pending_;
+  std::vector<std::uint64_t> last_stop_exchange_;
+  std::uint64_t last_insisting_exchange_ = 0;
+
+  // commands and refreshes
+  CommandId unit_ = 0;
+  unsigned commands_in_a_row_ = 0;
+  unsigned exchanges_without_background_ = 0;
+
+  // probes
+  std::size_t probe_cursor_ = 0;
+  TimePoint next_probe_;
+
+  // cycle
+  std::size_t cursor_ = 0;
+  bool cycle_open_ = false;
+  bool refreshed_in_cycle_ = false;
+  TimePoint cycle_start_;
+  TimePoint pause_until_;
+  bool pause_cut_ = false;
+  Duration cycle_time_{ 0 };
+  std::uint64_t cycles_ = 0;
+  std::uint64_t rounds_ = 0;
+  std::size_t background_cursor_ = 0;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_SCHEDULER_H

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_STOP_JOB_H
+#define INVERTER_BUS_BUS_STOP_JOB_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// The stop of one inverter (contract, rules 3.1 to 3.3): write RUN off, read back that it is off, and insist until both
+/// have happened. It knows no priority and no time-out; the scheduler decides when its next exchange goes.
+class StopJob
+{
+public:
+  StopJob(const drive::Drive& drive, std::uint8_t station);
+
+  /// Asks for a stop. While one is pending, another only upgrades its mode; attempts go on counting.
+  void request(TimePoint now, StopMode mode);
+  /// The sequence that carries out \p mode on this drive: coast, quick or stop.
+  std::string sequenceFor(StopMode mode) const;
+
+  bool pending() const;
+  unsigned attempts() const;
+  /// Written and acknowledged: the read-back is next.
+  bool written() const;
+
+  /// The next frame of the stop.
+  wire::Request next() const;
+  /// Its first byte leaves; returns the latency from the request to it if this is the first frame of the stop.
+  std::optional<Duration> sent(TimePoint now);
+
+  enum class Progress
+  {
+    /// Another exchange is needed.
+    GoesOn,
+    /// This attempt failed; the next one starts with the write.
+    Failed,
+    Confirmed
+  };
+  Progress done(const wire::Reply& reply);
+  /// RUN was seen off by a status read that was sent after the write.
+  void confirm();
+  /// A newer command of the same user takes its place (a command of 0 that was superseded).
+  void cancel();
+  /// Error id of the last failed attempt.
+  std::uint16_t lastError() const;
+
+private:
+  const drive::Sequence* sequence() const;
+
+  const drive::Drive& drive_;
+  std::uint8_t station_;
+  bool pending_ = false;
+  StopMode mode_ = StopMode::Decelerate;
+  unsigned attempts_ = 0;
+  std::size_t step_ = 0;
+  std::uint16_t last_error_ = 0;
+  TimePoint requested_at_;
+  bool first_frame_left_ = false;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_STOP_JOB_H

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_TYPES_H
+#define INVERTER_BUS_BUS_TYPES_H
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "inverter_bus/drive/drive.h"
+#include "inverter_bus/wire/line.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+// Error ids of the node itself (contract, section 2); 0x0205-0x0207 stand in wire/request.h.
+constexpr std::uint16_t ERROR_NONE = 0x0000;
+constexpr std::uint16_t ERROR_OUT_OF_RANGE = 0xA000;
+constexpr std::uint16_t ERROR_OFFLINE = 0xB001;
+constexpr std::uint16_t ERROR_CANCELLED = 0xB002;
+constexpr std::uint16_t ERROR_SHUTTING_DOWN = 0xB003;
+constexpr std::uint16_t ERROR_NOT_OFFERED = 0xB004;
+constexpr std::uint16_t ERROR_LOCKED = 0xB005;
+constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
+
+/// One sentence for an error id that needs no drive to explain it.
+std::string errorText(std::uint16_t error_id);
+
+enum class StopMode : std::uint8_t
+{
+  Decelerate = 0,
+  Coast = 1,
+  Quick = 2
+};
+
+/// Answer of every service.
+struct Answer
+{
+  bool success = false;
+  std::uint16_t error_id = ERROR_NONE;
+  std::string message;
+  // read_parameter
+  double value = 0.0;
+  std::string unit;
+  // read_faults
+  drive::FaultRecord present;
+  std::vector<drive::FaultRecord> faults;
+};
+
+/// Called once, in the bus thread or in the caller's; must not block.
+using AnswerCallback = std::function<void(const Answer&)>;
+
+/// Who sent a velocity and over which connection.
+struct Publisher
+{
+  /// ROS name of the publishing node: what counts for neutral and lock.
+  std::string name;
+  /// The topic it came over: a latched message is a repeat only where this publisher was heard before.
+  std::string topic;
+  /// The publisher latches: its first message on a connection may be old.
+  bool latched = false;
+  /// First message on this connection.
+  bool first_on_connection = false;
+  /// The publisher was there before this node subscribed.
+  bool before_start = false;
+};
+
+/// Velocities in the user's unit for inverters by index (order of the scan list by node).
+struct VelocityCommand
+{
+  std::vector<std::pair<std::size_t, double>> targets;
+  Publisher publisher;
+};
+
+/// What InverterStatus.msg carries. An empty field of \ref monitor is NaN or "can't tell" there.
+struct InverterStatus
+{
+  std::size_t index = 0;
+  /// Arrival of the reply; not valid before the first reply.
+  TimePoint stamp;
+  bool has_stamp = false;
+  /// Fields older than they may be are already taken out; empty while offline.
+  drive::Monitor monitor;
+  bool run_command = false;
+  bool communication_error = false;
+  bool move_velocity_active = false;
+  bool reset_active = false;
+  bool stop_active = false;
+  bool locked = true;
+  std::uint16_t error_id = 0;
+  std::string error_text;
+  double commanded_velocity = 0.0;  ///< user's unit; 0 when no command is in force
+};
+
+struct BusStatus
+{
+  bool connected = false;
+  bool busy = false;
+  std::uint8_t node = 0;
+  bool error = false;
+  std::uint16_t error_id = 0;
+  wire::LineCounters counters;
+  std::uint64_t reconnects = 0;
+  double cycle_time = 0.0;   ///< [s] of the last complete cycle
+  double utilization = 0.0;  ///< 0..1 of the line's time over the last second
+  double efficiency = 0.0;   ///< computed cost of the cycle / its real time
+  double stop_latency_max = 0.0;  ///< [s]
+  std::vector<std::uint8_t> offline_nodes;
+};
+
+enum class Level
+{
+  Ok = 0,
+  Warn = 1,
+  Error = 2
+};
+
+/// One line of /diagnostics or of the log, saying what to do.
+struct Finding
+{
+  Level level = Level::Ok;
+  std::string text;
+};
+
+/// What /diagnostics shows of an inverter.
+struct InverterReport
+{
+  std::string name;
+  std::uint8_t node = 0;
+  InverterStatus status;
+  std::vector<Finding> findings;
+  /// Key and value pairs: settings as read, counters, ages.
+  std::vector<std::pair<std::string, std::string>> values;
+};
+
+/// What /diagnostics shows of the bus and of everything on it.
+struct Report
+{
+  BusStatus bus;
+  std::vector<Finding> findings;
+  std::vector<std::pair<std::string, std::string>> values;
+  std::vector<InverterReport> inverters;
+};
+
+/// Frames of the flight recorder, on their way to a file.
+struct TraceDump
+{
+  std::string reason;
+  TimePoint time;
+  std::vector<wire::FrameEvent> frames;
+};
+
+/// Where the bus reports to. All calls come from the bus thread with no lock of the bus held, and must not block.
+class Observer
+{
+public:
+  virtual ~Observer() = default;
+  /// After every refresh of an inverter, and at 1 Hz while it is offline.
+  virtual void inverterStatus(const InverterStatus& status) = 0;
+  /// After every cycle, at most 10 Hz, at least 1 Hz.
+  virtual void busStatus(const BusStatus& status) = 0;
+  virtual void log(const Finding& finding) = 0;
+  /// On a trip, on an inverter going offline, on a stop that missed its bound: at most once per 10 s.
+  virtual void trace(TraceDump dump) = 0;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_TYPES_H

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_DRIVE_PROFILE_H
+#define INVERTER_BUS_DRIVE_PROFILE_H
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace inverter_bus
+{
+namespace drive
+{
+/// A mistake in a profile or a scan list; what() is one line that names file, line, key, value and what is allowed.
+class ConfigurationError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What an address counts.
+enum class Space
+{
+  Coil,
+  Register
+};
+
+/// One value inside a drive: where it lies, how many words it has, what one count means.
+struct Item
+{
+  Space space = Space::Register;
+  /// The number printed in the drive's manual.
+  std::uint16_t number = 0;
+  /// The number on the wire (number + the profile's offset).
+  std::uint16_t address = 0;
+  /// Registers: 1 or 2 (high word first). Coils: 1, or up to 32 packed with the first coil in bit 0.
+  unsigned size = 1;
+  bool is_signed = false;
+  /// Value of one count in \ref unit.
+  double resolution = 1.0;
+  std::string unit;
+  /// A bit of the register (0-15) where the item is a flag in a word.
+  std::optional<unsigned> bit;
+  /// Bits of the register that count (others are undefined on this drive).
+  std::uint32_t mask = 0xFFFFFFFF;
+  /// Raw value to meaning, where the drive counts otherwise than we do (direction: 2 means reverse = -1).
+  std::map<std::uint32_t, int> values;
+  /// Empty, or the name under which this item is unconfirmed.
+  std::string unconfirmed;
+};
+
+/// A place that a command writes (frequency, direction, run, trip_reset, enter, ...).
+struct Point
+{
+  std::string name;
+  Item item;
+};
+
+/// One step of a command sequence: write a value to a point.
+struct Step
+{
+  std::string point;
+  /// Empty: the frequency set-point of the command.
+  std::optional<std::uint32_t> value;
+  /// Pause after the step [s].
+  double pause = 0.0;
+};
+
+/// A command: its steps in the order of sending.
+struct Sequence
+{
+  std::vector<Step> steps;
+  /// Empty, or the name under which this sequence is unconfirmed.
+  std::string unconfirmed;
+};
+
+/// One entry of the parameter table.
+struct Parameter
+{
+  std::string name;
+  std::string title;
+  Item item;
+  /// In \ref Item::unit; empty: not known, the register's size limits.
+  std::optional<std::pair<double, double>> range;
+  /// The range is from memory or from a sister drive: the drive's own exception decides.
+  bool range_unconfirmed = false;
+  /// May be written while the motor runs. Empty: not known, the drive decides.
+  std::optional<bool> while_running;
+  bool read_only = false;
+  /// Station number or serial settings: refused unless `persist`, since they would cut the line.
+  bool communication = false;
+};
+
+/// Reasons of a trip, by code.
+using FaultTable = std::map<std::uint16_t, std::string>;
+
+/// Where the trip memory lies: fields by name (code, output_frequency, output_current, dc_voltage, run_hours,
+/// power_on_hours), newest trip first.
+struct FaultHistory
+{
+  std::vector<std::map<std::string, Item>> entries;
+};
+
+/// A setting of the drive that is read at connect, and what it should be.
+struct Expectation
+{
+  std::string parameter;
+  /// Values that are fine.
+  std::set<std::uint32_t> accept;
+  /// What to do when it has another value.
+  std::string advice;
+};
+
+/// What the drive does when the bus falls silent.
+struct CommunicationLoss
+{
+  /// Parameter with the drive's own time-out (0 = off); empty: none to read, or not confirmed.
+  std::string timeout_parameter;
+  /// Parameter with the reaction; empty: none to read, or not confirmed.
+  std::string action_parameter;
+  /// Reactions after which the motor runs on.
+  std::set<std::uint32_t> runs_on;
+  /// Assumed time-out where none can be read [s] (key drive_timeout); 0: none.
+  double assumed_timeout = 0.0;
+  /// Assumed reaction (key drive_loss_action): "runs_on", "decelerate", "coast", "trip".
+  std::string assumed_action;
+  /// Also supervised while the motor stands.
+  bool also_idle = false;
+  std::string advice;
+};
+
+/// Everything that the driver knows about one kind of drive. Read from YAML, never changed afterwards.
+struct Profile
+{
+  std::string name;   ///< omron_mx2
+  std::string title;  ///< OMRON 3G3MX2-V1 ...
+  std::string file;
+  std::string protocol;  ///< modbus_rtu
+
+  unsigned first_station = 1;
+  unsigned last_station = 247;
+  std::set<unsigned> baud_rates;
+  std::set<unsigned> data_bits;
+  std::set<std::string> parities;
+  std::set<unsigned> stop_bits;
+
+  /// Printed number of the register with wire address 0 (1 where the manual counts from 1, 0 where it prints addresses).
+  unsigned first_register = 0;
+
+  std::set<unsigned> functions;
+  unsigned read_registers = 1;
+  unsigned write_registers = 1;
+  unsigned read_coils = 1;
+  /// Numbers (as printed) from..to that the drive answers without a hole, so that reads may span them.
+  std::vector<std::pair<unsigned, unsigned>> register_spans;
+  std::vector<std::pair<unsigned, unsigned>> coil_spans;
+
+  double maximum_frequency = 0.0;  ///< [Hz]
+  double reply_delay = 0.0;        ///< [s] besides the gap
+  std::optional<double> response_timeout;
+  /// The drive may be deaf that long after a trip reset or power-up [s].
+  double deaf_after_reset = 0.0;
+
+  std::map<std::string, Point> points;
+  /// forward, reverse, stop, coast, quick, reset, release, store.
+  std::map<std::string, Sequence> sequences;
+  /// Item that reads 1 while the drive stores to EEPROM.
+  std::optional<Item> store_busy;
+  /// Parameters are written to RAM and kept by `store` (MX2, RX), or every write reaches the EEPROM (VF-S15).
+  bool writes_reach_eeprom = false;
+
+  /// Monitor items by field name of the status message: run_seen, raw_status, operation, running, direction, ready, at_speed,
+  /// at_set_frequency, overload_warning, pid_deviation, faulted, fault_code, warning_code, output_frequency,
+  /// output_current, output_voltage, dc_voltage, torque, temperature.
+  std::map<std::string, Item> status;
+  /// Fields of \ref status that are read at 1 Hz instead of in every refresh.
+  std::set<std::string> slow;
+  /// Fields of \ref status that are read only while the drive is tripped.
+  std::set<std::string> when_faulted;
+
+  FaultTable faults;
+  FaultTable warnings;
+  FaultHistory history;
+  std::map<std::string, Parameter> parameters;
+  /// Registers (as printed, from..to) that command the drive: no parameter there can be written.
+  std::vector<std::pair<unsigned, unsigned>> command_registers;
+
+  /// What tells this kind of drive from another one.
+  std::vector<Expectation> identity;
+  /// Who may command the drive.
+  std::vector<Expectation> command_source;
+  /// Settings by which a drive restarts by itself.
+  std::vector<Expectation> self_restart;
+  CommunicationLoss communication_loss;
+  /// Parameter whose value (unit s or ms) is the drive's own reply delay (C078); empty: none, or not confirmed.
+  std::string reply_delay_parameter;
+
+  /// A write to station 0 that stops every drive of this profile is confirmed safe by the manual.
+  bool broadcast_stop = false;
+  double broadcast_turnaround = 0.02;  ///< [s]
+
+  /// Meanings of exception codes in the drive's own words.
+  std::map<unsigned, std::string> exceptions;
+
+  /// Names that still need `confirm` or `overrides` and lock a command or a monitor.
+  std::set<std::string> unconfirmed;
+  /// Names that only concern entries of the tables: parameters, their ranges, trip texts.
+  std::set<std::string> unconfirmed_tables;
+};
+
+/// What a scan list entry changes in its profile.
+struct ProfileChanges
+{
+  /// YAML text of the entry's `overrides` map (a map of profile keys); empty: none.
+  std::string overrides_yaml;
+  /// Where the overrides stand, for messages.
+  std::string place;
+  /// Names of unconfirmed items that the user has checked, or `all`.
+  std::vector<std::string> confirm;
+};
+
+/// Reads the profile \p name_or_path: an absolute path, or a name that stands for `<directory>/<name>.yaml`.
+/// \throws ConfigurationError "file:line: key ...: what is wrong, what is allowed"
+Profile loadProfile(const std::string& name_or_path, const std::string& directory,
+                    const ProfileChanges& changes = ProfileChanges());
+
+/// Names of the profiles in \p directory, sorted; empty also if it can't be read.
+std::vector<std::string> knownProfiles(const std::string& directory);
+
+/// All mistakes of one profile file, one line each ("file:line: ..."); empty: it is fine. For `check_profile`.
+std::vector<std::string> checkProfile(const std::string& path);
+}  // namespace drive
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_DRIVE_PROFILE_H

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+#ifndef INVERTER_BUS_SIMULATION_BUS_RUNNER_H
+#define INVERTER_BUS_SIMULATION_BUS_RUNNER_H
+
+#include <functional>
+#include <mutex>
+#include <string>
+
+#include "inverter_bus/simulation/pseudo_terminal.h"
+#include "inverter_bus/simulation/simulated_bus.h"
+
+namespace inverter_bus
+{
+namespace simulation
+{
+/// Plays a bus on a pseudo-terminal in real time (steady clock). run() blocks in one thread; command() may be called from any
+/// other; stop() also from a signal handler.
+class BusRunner
+{
+public:
+  /// @param bus must outlive the runner and is used by nobody else while run() runs; its start should be now
+  /// @throws std::runtime_error when terminal or link can't be made
+  BusRunner(SimulatedBus& bus, const std::string& link);
+  ~BusRunner();
+  BusRunner(const BusRunner&) = delete;
+  BusRunner& operator=(const BusRunner&) = delete;
+
+  /// Also reads commands, one a line, from this descriptor; its end ends nothing. Call it before run().
+  /// @param answer gets the answer to each command
+  void readCommands(int descriptor, std::function<void(const std::string&)> answer);
+
+  /// Returns after stop().
+  void run();
+  void stop() noexcept;
+  std::string command(const std::string& line);
+  const PseudoTerminal& terminal() const;
+
+private:
+  void step(bool readable);
+  void matchPort();
+  void handOver();
+  void readCommandBytes();
+  int waitTime(long& nanoseconds) const;
+
+  SimulatedBus& bus_;
+  PseudoTerminal terminal_;
+  std::mutex mutex_;
+  int wake_;
+  volatile bool stop_ = false;
+  int command_descriptor_ = -1;
+  std::string command_text_;
+  std::function<void(const std::string&)> answer_;
+};
+}  // namespace simulation
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SIMULATION_BUS_RUNNER_H

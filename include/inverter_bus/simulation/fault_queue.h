@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+#ifndef INVERTER_BUS_SIMULATION_FAULT_QUEUE_H
+#define INVERTER_BUS_SIMULATION_FAULT_QUEUE_H
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "inverter_bus/simulation/time.h"
+
+namespace inverter_bus
+{
+namespace simulation
+{
+/// What can go wrong with one exchange, in the order in which it is done to a reply.
+enum class FaultKind
+{
+  LOST_REQUEST,     ///< the drive doesn't hear the request: nothing is executed, nothing answered
+  LOST_REPLY,       ///< executed, but the reply never comes
+  EXCEPTION,        ///< not executed; answered with the exception `value`
+  FOREIGN_STATION,  ///< the reply carries another station number (its check sum is right)
+  FOREIGN_SHAPE,    ///< the reply belongs to another kind of request (its check sum is right)
+  DAMAGED,          ///< one byte of the reply is wrong
+  TRUNCATED,        ///< only the first `value` bytes of the reply come
+  NOISE,            ///< `value` random bytes come right before the reply
+  LATE              ///< the reply comes `value` seconds later
+};
+
+struct Fault
+{
+  FaultKind kind = FaultKind::LOST_REPLY;
+  double value = 0.0;              ///< see FaultKind
+  int count = 1;                   ///< how many of the next exchanges it hits; 0: all until `until` or a clear
+  std::optional<TimePoint> until;  ///< end of its life
+  std::optional<int> function;     ///< hits only requests with this function code
+};
+
+/// The injected faults of one drive that wait for an exchange. No threads of its own.
+class FaultQueue
+{
+public:
+  void add(const Fault& fault);
+  void clear();
+  std::size_t size() const;
+
+  /// The faults that hit the exchange at `now`, at most one of each kind, in the order of FaultKind; their
+  /// counts go down by one.
+  std::vector<Fault> take(std::optional<int> function, TimePoint now);
+
+private:
+  std::vector<Fault> faults_;
+};
+}  // namespace simulation
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SIMULATION_FAULT_QUEUE_H

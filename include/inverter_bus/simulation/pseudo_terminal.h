@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+#ifndef INVERTER_BUS_SIMULATION_PSEUDO_TERMINAL_H
+#define INVERTER_BUS_SIMULATION_PSEUDO_TERMINAL_H
+
+#include <string>
+
+#include "inverter_bus/simulation/bytes.h"
+
+namespace inverter_bus
+{
+namespace simulation
+{
+/// A raw pseudo-terminal with a link to it, which stands for the serial port of an adapter. The far side is kept open here
+/// too, so that a client that closes doesn't hang it up. Not for several threads at once.
+class PseudoTerminal
+{
+public:
+  /// Opens the terminal. @param link an older link of that name is replaced
+  /// @throws std::runtime_error when there is no terminal to be had, or the link can't be made; the text says why
+  explicit PseudoTerminal(const std::string& link);
+  ~PseudoTerminal();
+  PseudoTerminal(const PseudoTerminal&) = delete;
+  PseudoTerminal& operator=(const PseudoTerminal&) = delete;
+
+  /// As after plugging the adapter in: a new terminal under the same link. @throws as the constructor
+  void open();
+  /// As after pulling it out: link and terminal are gone, clients get a hang-up.
+  void close();
+  bool isOpen() const;
+
+  int descriptor() const;           ///< for poll(); -1 while closed
+  const std::string& path() const;  ///< the terminal's own name
+  const std::string& link() const;
+
+  /// @return what clients have written, empty when nothing waits
+  Bytes read();
+  /// Never blocks: what nobody reads and doesn't fit any more is lost, as on a wire.
+  void write(const Bytes& bytes);
+
+private:
+  void makeLink();
+  void removeLink();
+
+  std::string link_;
+  std::string path_;
+  int near_ = -1;
+  int far_ = -1;
+};
+}  // namespace simulation
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SIMULATION_PSEUDO_TERMINAL_H

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+#ifndef INVERTER_BUS_SIMULATION_SIMULATED_LINE_H
+#define INVERTER_BUS_SIMULATION_SIMULATED_LINE_H
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/simulation/bytes.h"
+#include "inverter_bus/simulation/line_settings.h"
+#include "inverter_bus/simulation/random.h"
+#include "inverter_bus/simulation/simulated_drive.h"
+#include "inverter_bus/simulation/time.h"
+
+namespace inverter_bus
+{
+namespace simulation
+{
+/// What happens to a request whose first byte comes before the line was silent for 3.5 characters.
+enum class GapRule
+{
+  ENFORCE,  ///< no drive hears it, as on a real line
+  IGNORE    ///< it is served and counted: for masters such as plain libmodbus that don't wait
+};
+
+struct LineOptions
+{
+  LineSettings settings;
+  GapRule gap = GapRule::ENFORCE;
+  Duration gap_tolerance = std::chrono::microseconds(300);  ///< a request may come this much early
+  /// Bytes for the master come out together for as long as this, never before their time; zero: a frame in one piece at its
+  /// end (fastest, for virtual time).
+  Duration delivery_step = Duration::zero();
+  std::uint64_t seed = 1;
+};
+
+/// Bytes that came out of the line for the master.
+struct Delivery
+{
+  TimePoint time;  ///< end of the last byte on the wire
+  Bytes bytes;
+};
+
+/// One frame that was on the wire.
+struct FrameRecord
+{
+  enum class Source
+  {
+    MASTER,
+    DRIVE,
+    FOREIGN_MASTER,
+    NOISE
+  };
+  TimePoint time;  ///< start of its first byte
+  Source source = Source::MASTER;
+  std::string drive;  ///< who sent it, if a drive
+  Bytes bytes;        ///< as on the wire: damage included
+  std::string remark; ///< "lost: gap", "damaged: collision", ...; empty: all well
+};
+
+struct LineCounters
+{
+  std::uint64_t requests = 0;    ///< frames of the master
+  std::uint64_t replies = 0;     ///< frames of drives
+  std::uint64_t lost_gap = 0;    ///< requests lost to the missing gap
+  std::uint64_t early = 0;       ///< requests without the gap that were served (GapRule::IGNORE)
+  std::uint64_t damaged = 0;     ///< requests that arrived with a wrong check sum or length
+  std::uint64_t collisions = 0;  ///< transmissions damaged by another
+  std::uint64_t foreign = 0;     ///< frames of the second master
+};
+
+/// An RS-485 line with drives on it, one master and, at will, a second one; event driven, in the time that is passed in.
+///
+/// - Each byte occupies the wire for start + data + parity + stop bits; bytes handed over together follow back to back.
+/// - A frame ends with 3.5 characters of silence; then the drives get it, and the answering one starts after its delay.
+/// - Two transmissions at once damage each other's bytes where they overlap.
+/// - A request that comes before the line was silent for 3.5 characters is lost (GapRule).
+///
+/// **The gap in real time.** A process is woken late, never early. What the master writes is stamped when it is read, so its
+/// stamp is late or right. What the master reads it can have seen no earlier than it was handed over; that, not the ideal
+/// end of the byte on the wire, is what takeOutput() takes as the end of the line's activity: a master that reads
+/// the last byte late and then waits its 3.5 characters is always in time, one that doesn't wait is found out however
+/// late this process was. `gap_tolerance` covers the granularity of the master's own timer and a late stamp on a frame that
+/// nobody answers (after it the master waits far longer anyway).
+///
+/// Not for several threads at once.
+class SimulatedLine
+{
+public:
+  SimulatedLine(const LineOptions& options, TimePoint start);
+
+  /// @param drive must outlive the line
+  void attach(SimulatedDrive& drive);
+  /// Called for every frame once it is over (replies: in the order of their ends).
+  void setObserver(std::function<void(const FrameRecord&)> observer);
+
+  /// The master sends: the first byte is on the wire from now on, or after the master's previous one.
+  void receive(const Bytes& bytes, TimePoint now);
+  /// When something is due next; nothing: the line is at rest.
+  std::optional<TimePoint> nextEvent() const;
+  /// Does everything that is due up to now.
+  void advance(TimePoint now);
+  /// What has come out for the master since the last call. @param now when the master can see it
+  std::vector<Delivery> takeOutput(TimePoint now);
+
+  /// The master's adapter is unplugged: what it was sending breaks off, and it hears nothing.
+  void setConnected(bool connected, TimePoint now);
+  /// The adapter sends everything back to the master that the master sends (no echo suppression).
+  void setEcho(bool on);
+  /// The line between master and drives is cut: nobody hears anything.
+  void setSilent(bool on);
+  /// A second master sends a frame, as is. @param wait true: as soon as the line is silent; false: at once
+  void sendForeign(const Bytes& frame, bool wait, TimePoint now);
+  /// Bytes of nobody.
+  void sendNoise(std::size_t count, TimePoint now);
+
+  const LineCounters& counters() const;
+  void clearCounters();
+  const LineOptions& options() const;
+  /// @return true when nothing is on the wire or owed
+  bool idle() const;
+
+private:
+  struct WireByte
+  {
+    TimePoint start;
+    std::uint8_t value;
+    bool damaged;
+  };
+
+  /// What one participant sends without a pause.
+  struct Transmission
+  {
+    FrameRecord::Source source = FrameRecord::Source::MASTER;
+    SimulatedDrive* drive = nullptr;
+    std::vector<WireByte> bytes;
+    bool for_master = true;        // comes out at the master's end
+    std::size_t delivered = 0;     // bytes of it that did
+    bool early = false;            // came before the gap
+    bool joined = false;           // began as one frame and went on as the next
+    bool collided = false;
+    bool served = false;           // a request: the drives have had it
+    bool over = false;             // nothing more to do
+  };
+
+  struct Owed
+  {
+    TimePoint start;
+    SimulatedDrive* drive;
+    Bytes bytes;
+  };
+
+  struct WaitingForeign
+  {
+    TimePoint start;
+    Bytes bytes;
+  };
+
+  static bool isRequest(const Transmission& transmission);
+  TimePoint endOf(const Transmission& transmission) const;
+  TimePoint dueTime(const Transmission& transmission) const;
+  Transmission& open(FrameRecord::Source source);
+  Transmission* openRequest(FrameRecord::Source source);
+  void append(Transmission& transmission, const Bytes& bytes, TimePoint start);
+  void collide(Transmission& added, std::size_t first);
+  void process(TimePoint time);
+  void processForeign(TimePoint time);
+  void processOwed(TimePoint time);
+  void processTransmission(Transmission& transmission, TimePoint time);
+  void deliver(Transmission& transmission, TimePoint time);
+  void finishRequest(Transmission& transmission);
+  void serve(const Transmission& transmission, const Bytes& frame, TimePoint time, std::string& remark);
+  void finishReply(Transmission& transmission);
+  void report(const Transmission& transmission, const std::string& remark);
+  static Bytes valuesOf(const Transmission& transmission);
+  bool owes(const SimulatedDrive* drive) const;
+  bool wholeForAny(const Bytes& frame) const;
+
+  LineOptions options_;
+  Duration character_;
+  Duration gap_;
+  Random random_;
+  std::vector<SimulatedDrive*> drives_;
+  std::function<void(const FrameRecord&)> observer_;
+  std::deque<Transmission> live_;  // references stay valid when one is added at the end
+  std::vector<Owed> owed_;
+  std::vector<WaitingForeign> waiting_;
+  std::vector<Delivery> output_;
+  TimePoint last_activity_;  // on the wire
+  TimePoint last_seen_;      // handed over to the master
+  bool connected_ = true;
+  bool echo_ = false;
+  bool silent_ = false;
+  LineCounters counters_;
+};
+}  // namespace simulation
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SIMULATION_SIMULATED_LINE_H

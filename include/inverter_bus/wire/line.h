@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_WIRE_LINE_H
+#define INVERTER_BUS_WIRE_LINE_H
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/wire/echo_filter.h"
+#include "inverter_bus/wire/protocol.h"
+#include "inverter_bus/wire/reply_bars.h"
+
+namespace inverter_bus
+{
+namespace wire
+{
+/// How long things take on a serial line. All functions are pure.
+class LineTiming
+{
+public:
+  /// \param baud_rate bits per second (behind a gateway: that of the line), > 0
+  /// \param bits_per_character start, data, parity and stop bits: 9 to 12
+  /// \param delivery longest pause that the way from the line to this program can put into a frame: 16 ms of a USB
+  /// adapter's latency timer and some reserve; more for a gateway
+  LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration delivery = std::chrono::milliseconds(25));
+
+  /// Time of \p count characters on the wire.
+  Duration characters(double count) const;
+  /// Silence before a request: \p gap_characters; above 19200 baud a character counts as 0.5 ms, which makes the 1.75
+  /// ms that Modbus over serial line V1.02, section 2.5.1.1 asks for in place of 3.5 characters.
+  Duration gap(double gap_characters) const;
+  /// Silence after which the rest of a frame that has begun will not come any more.
+  Duration patience(double gap_characters) const;
+
+private:
+  double character_s_;
+  bool fast_;
+  Duration delivery_;
+};
+
+/// A frame that passed the line, for the flight recorder.
+struct FrameEvent
+{
+  enum class Kind
+  {
+    Request,
+    Reply,
+    Exception,
+    /// Bytes that were no valid frame.
+    Damaged,
+    /// The answer to an earlier request that had timed out.
+    Late,
+    /// A valid frame that nobody here asked for.
+    Foreign
+  };
+  Kind kind;
+  TimePoint time;
+  Bytes bytes;
+};
+
+/// Counters of one line since start (uint64: never wrap in practice).
+struct LineCounters
+{
+  std::uint64_t requests = 0;
+  std::uint64_t replies = 0;  ///< valid replies, exceptions included
+  std::uint64_t timeouts = 0;
+  std::uint64_t corrupt_replies = 0;
+  std::uint64_t exceptions = 0;
+  std::uint64_t late_replies = 0;
+  std::uint64_t foreign_frames = 0;  ///< frames that nobody here asked for: a second master
+  std::uint64_t echoes = 0;          ///< exchanges whose local echo was removed
+};
+
+/// A late reply, measured: /diagnostics says which response_timeout would have caught it.
+struct LateReply
+{
+  std::uint8_t station = 0;
+  /// From the end of the request on the wire to the first byte of its late reply.
+  Duration delay{ 0 };
+};
+
+/// One request at a time over one port: gap, transmission, waiting, checking, cleaning up after a lost reply. The only
+/// user of the Port, called by the bus thread only. It decides nothing: no retries, no priorities.
+///
+/// After a time-out or a damaged reply, the shape of that request is barred for one second (contract, rule 3.9),
+/// because Modbus RTU has no transaction number: a reply that comes late would be taken for the answer to the next
+/// request of the same shape. The bar falls when the late reply has come, or when a loop-back (08H) of that station
+/// with a fresh number was answered after it.
+class Line
+{
+public:
+  /// Called for every frame, in the bus thread; must be quick.
+  using FrameObserver = std::function<void(const FrameEvent&)>;
+
+  Line(Port& port, Protocol& protocol, Clock& clock, LineTiming timing);
+
+  void setFrameObserver(FrameObserver observer);
+
+  /// Opens the port; forgets all bars, the echo finding and what was in the buffers. The first exchange after it must
+  /// be a read (see EchoFilter); it need not be answered.
+  OpenResult open(std::string& error);
+  void close();
+  bool isOpen() const;
+
+  /// Earliest time at which the next request may start: gap after the last byte in either direction, turnaround after a
+  /// broadcast.
+  TimePoint readyAt() const;
+
+  /// Sleeps until readyAt() and takes what arrived meanwhile (late replies, frames of a second master, noise),
+  /// extending the wait until the line has been silent for a gap; at most 100 ms, so that babble cannot stop a stop.
+  /// Returns false when the port is gone (it is closed then); after true, readyAt() has passed.
+  bool settle();
+
+  /// True if a late reply to an earlier request could not be taken for the answer to \p request.
+  bool mayAsk(const Request& request) const;
+  /// Earliest time from which mayAsk() is true without further traffic.
+  TimePoint mayAskAt(const Request& request) const;
+
+  /// Sends and waits for the answer; closes the port if it is lost. Call settle() before. Does not consult mayAsk(): a
+  /// stop is exempt from it. \p turnaround_after silence to keep after a broadcast.
+  Reply exchange(const Request& request, Duration turnaround_after = Duration{ 0 });
+
+  /// Time that an answered exchange occupies the line: gap, request, gap + reply delay, reply.
+  Duration cost(const Request& request, Duration drive_delay) const;
+  /// Time that an unanswered one does.
+  Duration costUnanswered(const Request& request) const;
+
+  const LineCounters& counters() const;
+  const LineTiming& timing() const;
+  bool echoFound() const;
+  /// Late replies since the last call.
+  std::vector<LateReply> takeLateReplies();
+
+private:
+  struct Waiting;
+  bool send(const Bytes& frame, Reply& reply);
+  Waiting startWaiting(const Request& request, const Bytes& frame, TimePoint sent_at);
+  void waitForReply(Waiting& waiting, Reply& reply);
+  TimePoint waitUntil(const Waiting& waiting) const;
+  ReceiveResult receive(TimePoint deadline);
+  bool consume(Waiting& waiting, Reply& reply);
+  bool consumeHead(Waiting& waiting, Reply& reply);
+  bool answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
+  void accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
+  void noteAnswer(const Parsed& parsed, const Bytes& raw);
+  void giveUp(Waiting& waiting, Reply& reply);
+  void lose(Reply& reply);
+  void consumeIdle();
+  void flushIdle();
+  void consumeIdleHead();
+  void stripEcho();
+  bool noteUnasked(const Parsed& parsed, const Bytes& raw);
+  void observe(FrameEvent::Kind kind, const Bytes& bytes, TimePoint time);
+  void reportDamaged();
+  void skip(std::size_t count);
+  Bytes take(std::size_t count);
+  Duration gap() const;
+
+  Port& port_;
+  Protocol& protocol_;
+  Clock& clock_;
+  LineTiming timing_;
+  FrameObserver observer_;
+  LineCounters counters_;
+  Bytes buffer_;
+  /// Bytes since the last report that belonged to no valid frame.
+  Bytes damaged_;
+  TimePoint ready_at_;
+  TimePoint last_byte_at_;
+  /// When the head of the buffer arrived.
+  TimePoint head_at_;
+  ReplyBars bars_;
+  EchoFilter echo_;
+  std::vector<LateReply> late_;
+  /// The last request if it was one that the drive may answer or not.
+  std::optional<Request> silent_request_;
+};
+}  // namespace wire
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_WIRE_LINE_H

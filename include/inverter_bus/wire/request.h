@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_WIRE_REQUEST_H
+#define INVERTER_BUS_WIRE_REQUEST_H
+
+#include <cstdint>
+#include <string>
+
+#include "inverter_bus/wire/port.h"
+
+namespace inverter_bus
+{
+namespace wire
+{
+/// One question on the bus, without the framing that a protocol puts around it.
+struct Request
+{
+  /// Station number on the bus; 0 with \ref broadcast.
+  std::uint8_t station = 0;
+  /// Modbus: function code and data. CompoWay/F: the command text (MRC, SRC, ...) in ASCII.
+  Bytes pdu;
+  /// Executed by every drive and answered by none.
+  bool broadcast = false;
+  /// False where the drive executes without a reply (VF-S15 fault reset): silence is then the normal end.
+  bool expects_reply = true;
+  /// The drive's own reply delay on top of the protocol's gap (C078, F805).
+  Duration reply_delay{ 0 };
+  /// Silence after the request that counts as lost.
+  Duration response_timeout{ seconds(0.1) };
+};
+
+/// How an exchange ended. Every value says what follows from it.
+enum class Outcome
+{
+  /// A reply that belongs to the request. The drive is alive.
+  Ok,
+  /// The drive answered that it will not (Modbus exception, CompoWay/F response code). It is alive: never counts
+  /// towards offline and is never repeated.
+  Exception,
+  /// No byte in time. Repeated up to `retries`; counts towards offline.
+  Timeout,
+  /// Bytes came, but no valid reply to this request. Repeated like a time-out.
+  Damaged,
+  /// The port is gone. Not the drive's fault; nothing is repeated before the port is open again.
+  PortLost
+};
+
+/// The end of an exchange.
+struct Reply
+{
+  Outcome outcome = Outcome::Timeout;
+  /// Ok: the reply without framing, function code first. Exception: the same (function | 0x80, code).
+  Bytes pdu;
+  /// The contract's error id: 0, 0x0205, 0x0206, 0x0207, 0x8xyy or a CompoWay/F code.
+  std::uint16_t error_id = 0;
+  /// When the first byte of the request was handed to the port.
+  TimePoint sent_at;
+  /// Arrival of the reply's last byte; with a time-out the end of waiting.
+  TimePoint finished_at;
+  /// Silence between the end of the request on the wire and the first byte of the reply (Ok and Exception only).
+  Duration turnaround{ 0 };
+};
+
+constexpr std::uint16_t ERROR_TIMEOUT = 0x0205;
+constexpr std::uint16_t ERROR_DAMAGED = 0x0206;
+constexpr std::uint16_t ERROR_PORT_LOST = 0x0207;
+}  // namespace wire
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_WIRE_REQUEST_H

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_WIRE_SERIAL_PORT_H
+#define INVERTER_BUS_WIRE_SERIAL_PORT_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/wire/port.h"
+
+namespace inverter_bus
+{
+namespace wire
+{
+enum class Parity
+{
+  None,
+  Even,
+  Odd
+};
+
+/// Who switches the RS-485 transmitter on and off.
+enum class Rs485
+{
+  /// The adapter does it by itself (every USB adapter that is sold as RS-485).
+  Auto,
+  /// The kernel's UART driver (TIOCSRS485).
+  Kernel,
+  /// RTS, high while sending; libmodbus switches it.
+  RtsHigh,
+  /// RTS, low while sending.
+  RtsLow
+};
+
+/// How frames get onto the line.
+enum class Transmission
+{
+  /// Through libmodbus, which puts the CRC on and switches RTS.
+  Modbus,
+  /// As they are (CompoWay/F).
+  Plain
+};
+
+struct SerialSettings
+{
+  std::string device;
+  unsigned baud_rate = 19200;
+  Parity parity = Parity::None;
+  unsigned data_bits = 8;
+  unsigned stop_bits = 1;
+  Rs485 rs485 = Rs485::Auto;
+  /// flock, and TIOCEXCL on real ports (on a pseudo-terminal it would outlive a killed owner).
+  bool exclusive = true;
+  Transmission transmission = Transmission::Modbus;
+};
+
+/// Baud rates that termios of this system knows.
+std::vector<unsigned> supportedBaudRates();
+
+/// Start, data, parity and stop bits.
+unsigned bitsPerCharacter(const SerialSettings& settings);
+
+/// A tty, opened raw and non-blocking; frames leave through what SerialSettings::transmission says. A pseudo-terminal
+/// ignores parity and 7 data bits: that is accepted there and nowhere else.
+std::unique_ptr<Port> makeSerialPort(const SerialSettings& settings);
+
+/// FTDI latency timer of the adapter behind \p device in milliseconds, or -1 if there is none. Reads sysfs; any thread.
+int adapterLatencyMs(const std::string& device);
+}  // namespace wire
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_WIRE_SERIAL_PORT_H

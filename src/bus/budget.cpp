@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/budget.h"
+
+#include <algorithm>
+#include <sstream>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+std::string milliseconds(Duration duration)
+{
+  std::ostringstream text;
+  text.precision(1);
+  text << std::fixed << toSeconds(duration) * 1e3 << " ms";
+  return text.str();
+}
+}  // namespace
+
+Budget::Budget(const Configuration& configuration, const wire::Line& line) : configuration_(configuration), line_(line)
+{
+}
+
+std::vector<wire::Request> Budget::requests(std::size_t index) const
+{
+  const InverterConfig& config = configuration_.bus.inverters[index];
+  const drive::Drive& drive = configuration_.drives[index];
+  std::vector<wire::Request> requests;
+  for (const auto* blocks : { &drive.fastBlocks(), &drive.slowBlocks(), &drive.faultBlocks() })
+  {
+    for (const drive::ReadBlock& block : *blocks)
+    {
+      requests.push_back(drive.read(config.node, block));
+    }
+  }
+  for (const char* name : { "forward", "reverse", "stop", "reset" })
+  {
+    if (const drive::Sequence* sequence = drive.sequence(name))
+    {
+      for (const drive::Step& step : sequence->steps)
+      {
+        requests.push_back(drive.write(config.node, step.point, step.value.value_or(0)));
+      }
+    }
+  }
+  for (wire::Request& request : requests)
+  {
+    request.response_timeout = seconds(config.response_timeout);
+    request.reply_delay = seconds(drive.profile().reply_delay);
+  }
+  return requests;
+}
+
+Duration Budget::refreshCost(std::size_t index) const
+{
+  const InverterConfig& config = configuration_.bus.inverters[index];
+  const drive::Drive& drive = configuration_.drives[index];
+  Duration cost{ 0 };
+  for (const drive::ReadBlock& block : drive.fastBlocks())
+  {
+    cost += line_.cost(drive.read(config.node, block), seconds(drive.profile().reply_delay));
+  }
+  return cost;
+}
+
+Duration Budget::cycle() const
+{
+  Duration fast{ 0 };
+  Duration slow{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    fast += refreshCost(index);
+    for (const drive::ReadBlock& block : configuration_.drives[index].slowBlocks())
+    {
+      slow += line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block),
+                         Duration{ 0 });
+    }
+  }
+  // Slow values come once a second each: they take this share of the time.
+  const double share = std::min(0.5, toSeconds(slow));
+  return seconds(toSeconds(fast) / (1.0 - share));
+}
+
+Duration Budget::longestExchange() const
+{
+  Duration longest{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    for (const wire::Request& request : requests(index))
+    {
+      longest = std::max(longest, line_.costUnanswered(request));
+      longest = std::max(longest, line_.cost(request, request.reply_delay));
+    }
+  }
+  return longest;
+}
+
+Duration Budget::worstStop() const
+{
+  Duration frame{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    if (const drive::Sequence* stop = configuration_.drives[index].sequence("stop"))
+    {
+      const drive::Step& step = stop->steps.front();
+      wire::Request request = configuration_.drives[index].write(1, step.point, step.value.value_or(0));
+      request.response_timeout = Duration{ 0 };
+      frame = std::max(frame, line_.costUnanswered(request));
+    }
+  }
+  return longestExchange() + frame;
+}
+
+Duration Budget::longestGap() const
+{
+  return 2 * cycle() + seconds(configuration_.bus.interval) + longestExchange();
+}
+
+std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Duration timeout) const
+{
+  const Duration gap = longestGap() - seconds(configuration_.bus.interval);
+  if (timeout > gap)
+  {
+    return std::nullopt;
+  }
+  return Finding{ Level::Warn, name + ": its own communication time-out of " + milliseconds(timeout) +
+                                   " can't be met for certain: up to " + milliseconds(gap) +
+                                   " may lie between two frames; raise it, or the baud rate, or take fewer inverters" };
+}
+
+std::vector<Finding> Budget::findings() const
+{
+  std::vector<Finding> findings;
+  findings.push_back({ Level::Ok, "bus budget: status cycle " + milliseconds(cycle()) + ", worst stop latency " +
+                                      milliseconds(worstStop()) + " (plus the ramp), longest gap between two frames to "
+                                      "an inverter " + milliseconds(longestGap()) });
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    const InverterConfig& config = configuration_.bus.inverters[index];
+    if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
+    {
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + std::to_string(config.command_timeout) +
+                                            " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
+    }
+    const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;
+    if (loss.timeout_parameter.empty() && loss.assumed_timeout > 0.0)
+    {
+      if (const auto finding = judgeDriveTimeout(config.name, seconds(loss.assumed_timeout)))
+      {
+        findings.push_back(*finding);
+      }
+    }
+  }
+  return findings;
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/bus.h"
+
+#include <pthread.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include "inverter_bus/bus/bus_loop.h"
+#include "inverter_bus/bus/coordinator.h"
+#include "inverter_bus/bus/flight_recorder.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+struct Bus::Implementation
+{
+  Implementation(Configuration given, std::unique_ptr<wire::Port> given_port, Observer& given_observer)
+    : configuration(std::move(given))
+    , port(std::move(given_port))
+    , observer(given_observer)
+    , protocol(wire::makeModbusRtu())
+    , line(*port, *protocol, clock,
+           wire::LineTiming(configuration.bus.serial.baud_rate, wire::bitsPerCharacter(configuration.bus.serial)))
+    , coordinator(configuration, line)
+    , loop(coordinator, line, clock, mutex)
+  {
+    line.setFrameObserver([this](const wire::FrameEvent& event) { recorder.add(event); });
+  }
+
+  void run();
+  void deliver();
+  void answerNow(PendingAnswers answers);
+  void takeRealtimePriority();
+
+  /// Runs \p request on the coordinator and delivers what it answered at once.
+  template <typename Request>
+  void ask(Request request)
+  {
+    PendingAnswers answers;
+    {
+      const std::lock_guard<std::mutex> guard(mutex);
+      request(coordinator, clock.now());
+      answers = coordinator.takeAnswers();
+      poked = true;
+    }
+    wake.notify_one();
+    answerNow(std::move(answers));
+  }
+
+  const Configuration configuration;
+  std::unique_ptr<wire::Port> port;
+  Observer& observer;
+  mutable wire::SteadyClock clock;
+  std::unique_ptr<wire::Protocol> protocol;
+  wire::Line line;
+  FlightRecorder recorder;
+
+  mutable std::mutex mutex;
+  std::condition_variable wake;
+  Coordinator coordinator;
+  BusLoop loop;
+  bool poked = false;
+  bool ending = false;
+  std::atomic<bool> in_use{ false };
+  std::thread thread;
+};
+
+void Bus::Implementation::answerNow(PendingAnswers answers)
+{
+  for (auto& entry : answers)
+  {
+    entry.first(entry.second);
+  }
+}
+
+void Bus::Implementation::deliver()
+{
+  Outputs outputs;
+  PendingAnswers answers;
+  {
+    const std::lock_guard<std::mutex> guard(mutex);
+    outputs = coordinator.takeOutputs();
+    answers = coordinator.takeAnswers();
+  }
+  answerNow(std::move(answers));
+  for (const InverterStatus& status : outputs.statuses)
+  {
+    observer.inverterStatus(status);
+  }
+  for (const BusStatus& status : outputs.bus_statuses)
+  {
+    observer.busStatus(status);
+  }
+  for (const Finding& finding : outputs.log)
+  {
+    observer.log(finding);
+  }
+  for (const std::string& reason : outputs.traces)
+  {
+    if (auto dump = recorder.automaticDump(reason, clock.now()))
+    {
+      observer.trace(std::move(*dump));
+    }
+  }
+}
+
+void Bus::Implementation::takeRealtimePriority()
+{
+  if (configuration.bus.realtime_priority <= 0)
+  {
+    return;
+  }
+  sched_param parameters{};
+  parameters.sched_priority = configuration.bus.realtime_priority;
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);
+  if (error != 0)
+  {
+    observer.log({ Level::Warn, "realtime_priority " + std::to_string(configuration.bus.realtime_priority) +
+                                    " is not granted (" + std::strerror(error) +
+                                    "): the bus runs with normal priority; allow rtprio in limits.conf" });
+  }
+}
+
+void Bus::Implementation::run()
+{
+  takeRealtimePriority();
+  for (;;)
+  {
+    const TimePoint next_round = loop.step();
+    in_use = loop.portInUse();
+    deliver();
+    std::unique_lock<std::mutex> lock(mutex);
+    if (ending && coordinator.shutdownDone(clock.now()))
+    {
+      return;
+    }
+    if (next_round > clock.now() && !poked)
+    {
+      wake.wait_until(lock, next_round, [this] { return poked; });
+    }
+    poked = false;
+  }
+}
+
+Bus::Bus(Configuration configuration, std::unique_ptr<wire::Port> port, Observer& observer)
+  : implementation_(std::make_unique<Implementation>(std::move(configuration), std::move(port), observer))
+{
+}
+
+Bus::~Bus()
+{
+  shutdown();
+}
+
+void Bus::start()
+{
+  implementation_->thread = std::thread([this] { implementation_->run(); });
+}
+
+bool Bus::portInUse() const
+{
+  return implementation_->in_use;
+}
+
+std::vector<std::string> Bus::shutdown()
+{
+  Implementation& bus = *implementation_;
+  {
+    const std::lock_guard<std::mutex> guard(bus.mutex);
+    if (bus.ending)
+    {
+      return {};
+    }
+    bus.ending = true;
+    bus.poked = true;
+    bus.coordinator.beginShutdown(bus.clock.now());
+  }
+  bus.wake.notify_one();
+  if (bus.thread.joinable())
+  {
+    bus.thread.join();
+  }
+  std::vector<std::string> unconfirmed;
+  {
+    const std::lock_guard<std::mutex> guard(bus.mutex);
+    unconfirmed = bus.coordinator.endShutdown();
+  }
+  bus.deliver();
+  bus.loop.close();
+  return unconfirmed;
+}
+
+std::uint16_t Bus::command(const VelocityCommand& command)
+{
+  std::uint16_t error_id = 0;
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) { error_id = coordinator.command(now, command); });
+  return error_id;
+}
+
+void Bus::refuse(const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text, bool group)
+{
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
+    coordinator.refuse(now, indices, error_id, text, group);
+  });
+}
+
+void Bus::stop(std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback)
+{
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
+    coordinator.stop(now, index, mode, std::move(callback));
+  });
+}
+
+void Bus::reset(std::size_t index, AnswerCallback callback)
+{
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
+    coordinator.reset(now, index, std::move(callback));
+  });
+}
+
+void Bus::readFaults(std::size_t index, AnswerCallback callback)
+{
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
+    coordinator.readFaults(now, index, std::move(callback));
+  });
+}
+
+void Bus::readParameter(std::size_t index, const std::string& name, AnswerCallback callback)
+{
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
+    coordinator.readParameter(now, index, name, std::move(callback));
+  });
+}
+
+void Bus::writeParameter(std::size_t index, const std::string& name, double value, bool persist,
+                         AnswerCallback callback)
+{
+  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
+    coordinator.writeParameter(now, index, name, value, persist, std::move(callback));
+  });
+}
+
+TraceDump Bus::dumpTrace()
+{
+  return implementation_->recorder.dump("dump_trace", implementation_->clock.now());
+}
+
+Report Bus::report() const
+{
+  const std::lock_guard<std::mutex> guard(implementation_->mutex);
+  return implementation_->coordinator.report(implementation_->clock.now());
+}
+
+std::vector<Finding> Bus::budget() const
+{
+  const std::lock_guard<std::mutex> guard(implementation_->mutex);
+  return implementation_->coordinator.budget();
+}
+
+ServiceBounds Bus::bounds() const
+{
+  const std::lock_guard<std::mutex> guard(implementation_->mutex);
+  return implementation_->coordinator.bounds();
+}
+}  // namespace bus
+}  // namespace inverter_bus

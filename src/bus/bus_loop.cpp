@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/bus_loop.h"
+
+#include <algorithm>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// An adapter that is plugged in again is found within this time.
+constexpr double OPEN_PERIOD_S = 0.2;
+constexpr double IN_USE_PATIENCE_S = 15.0;
+}  // namespace
+
+BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
+  : coordinator_(coordinator), line_(line), clock_(clock), mutex_(mutex)
+{
+}
+
+bool BusLoop::portInUse() const
+{
+  return given_up_;
+}
+
+void BusLoop::close()
+{
+  line_.close();
+}
+
+TimePoint BusLoop::openPort()
+{
+  const TimePoint now = clock_.now();
+  if (now < next_open_)
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    coordinator_.tick(now);
+    return next_open_;
+  }
+  next_open_ = now + seconds(OPEN_PERIOD_S);
+  std::string error;
+  const wire::OpenResult result = line_.open(error);
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (result == wire::OpenResult::Opened)
+  {
+    ever_opened_ = true;
+    coordinator_.portOpened(clock_.now());
+    return now;
+  }
+  coordinator_.portMissing(now, error, result == wire::OpenResult::InUse);
+  coordinator_.tick(now);
+  if (result != wire::OpenResult::InUse || ever_opened_)
+  {
+    in_use_since_.reset();
+    return next_open_;
+  }
+  in_use_since_ = in_use_since_ ? in_use_since_ : std::optional<TimePoint>(now);
+  given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
+  return next_open_;
+}
+
+void BusLoop::lose()
+{
+  line_.close();
+  next_open_ = clock_.now();
+}
+
+TimePoint BusLoop::step()
+{
+  if (!line_.isOpen())
+  {
+    return openPort();
+  }
+  // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
+  const bool there = line_.settle();
+  std::optional<Coordinator::Exchange> exchange;
+  TimePoint wake;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    const TimePoint now = clock_.now();
+    for (const wire::LateReply& late : line_.takeLateReplies())
+    {
+      coordinator_.lateReply(now, late);
+    }
+    coordinator_.noteLine(now, line_.counters(), line_.echoFound());
+    if (!there)
+    {
+      coordinator_.portLost(now);
+    }
+    else if ((exchange = coordinator_.next(now, wake)))
+    {
+      coordinator_.sent(clock_.now());
+    }
+  }
+  if (!there)
+  {
+    lose();
+    return next_open_;
+  }
+  if (!exchange)
+  {
+    return wake;
+  }
+  const wire::Reply reply = line_.exchange(exchange->request, exchange->turnaround);
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    coordinator_.noteLine(clock_.now(), line_.counters(), line_.echoFound());
+    coordinator_.done(reply);
+  }
+  if (reply.outcome == wire::Outcome::PortLost)
+  {
+    lose();
+  }
+  return clock_.now();
+}
+}  // namespace bus
+}  // namespace inverter_bus

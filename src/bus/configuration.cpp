@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/configuration.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "configuration_inverter.h"
+#include "configuration_scan_list.h"
+#include "configuration_section.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+/// `simulation` belongs to the simulated bus, which reads the same file.
+const std::vector<std::string> BUS_KEYS{ "port",
+                                         "protocol",
+                                         "baud_rate",
+                                         "parity",
+                                         "data_bits",
+                                         "stop_bits",
+                                         "rs485",
+                                         "interval",
+                                         "response_timeout",
+                                         "retries",
+                                         "offline_after",
+                                         "exclusive",
+                                         "realtime_priority",
+                                         "idle_divisor",
+                                         "parameter_access",
+                                         "trace_directory",
+                                         "defaults",
+                                         "scan_list",
+                                         "simulation" };
+
+std::string readPort(const Section& section, const std::string& fallback)
+{
+  const char* const allowed = "the absolute path of a serial device, such as /dev/ttyUSB0";
+  const std::string port = section.text("port", fallback);
+  if (port.find("://") != std::string::npos)
+  {
+    section.fail("port", "names a network, and this version serves serial ports", allowed);
+  }
+  if (port.front() != '/')
+  {
+    section.fail("port", "is no absolute path", allowed);
+  }
+  return port;
+}
+
+std::string readProtocol(const Section& section)
+{
+  const Value* value = section.find("protocol");
+  if (value != nullptr && value->type == Value::Type::Text && value->text == "compoway_f")
+  {
+    section.fail("protocol", "is not served by this version", "modbus_rtu");
+  }
+  return section.choice("protocol", "modbus_rtu", { "modbus_rtu" });
+}
+
+unsigned readBaudRate(const Section& section, unsigned fallback)
+{
+  std::vector<std::int64_t> rates;
+  for (const unsigned rate : wire::supportedBaudRates())
+  {
+    rates.push_back(rate);
+  }
+  return static_cast<unsigned>(section.choice("baud_rate", fallback, rates));
+}
+
+wire::Parity readParity(const Section& section)
+{
+  const std::string parity = section.choice("parity", "none", { "none", "even", "odd" });
+  return parity == "even" ? wire::Parity::Even : parity == "odd" ? wire::Parity::Odd : wire::Parity::None;
+}
+
+wire::Rs485 readRs485(const Section& section)
+{
+  static const std::map<std::string, wire::Rs485> MODES{ { "auto", wire::Rs485::Auto },
+                                                         { "kernel", wire::Rs485::Kernel },
+                                                         { "rts_high", wire::Rs485::RtsHigh },
+                                                         { "rts_low", wire::Rs485::RtsLow } };
+  return MODES.at(section.choice("rs485", "auto", { "auto", "kernel", "rts_high", "rts_low" }));
+}
+
+wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
+{
+  wire::SerialSettings serial;
+  serial.device = bus.port;
+  serial.baud_rate = readBaudRate(section, serial.baud_rate);
+  serial.parity = readParity(section);
+  serial.data_bits = static_cast<unsigned>(section.choice("data_bits", 8, { 7, 8 }));
+  if (serial.data_bits != 8)
+  {
+    section.fail("data_bits", "is too few for modbus_rtu, whose characters have 8", "8");
+  }
+  serial.stop_bits = static_cast<unsigned>(section.choice("stop_bits", 1, { 1, 2 }));
+  serial.rs485 = readRs485(section);
+  serial.exclusive = bus.exclusive;
+  return serial;
+}
+
+BusConfig readBus(const Section& section)
+{
+  BusConfig bus;
+  bus.port = readPort(section, bus.port);
+  bus.protocol = readProtocol(section);
+  bus.interval = section.number("interval", bus.interval, Range{ 0.0, 655.35, false, "s" });
+  bus.response_timeout = section.number("response_timeout", bus.response_timeout, Range{ 0.0, 10.0, true, "s" });
+  bus.retries = static_cast<int>(section.integer("retries", bus.retries, 0, 10));
+  bus.offline_after = static_cast<int>(section.integer("offline_after", bus.offline_after, 1, 100));
+  bus.exclusive = section.boolean("exclusive", bus.exclusive);
+  bus.realtime_priority = static_cast<int>(section.integer("realtime_priority", bus.realtime_priority, 0, 99));
+  bus.idle_divisor = static_cast<int>(section.integer("idle_divisor", bus.idle_divisor, 1, 1000));
+  bus.parameters_read_only =
+      section.choice("parameter_access", "read_write", { "read_write", "read_only" }) == "read_only";
+  bus.trace_directory = section.text("trace_directory", bus.trace_directory);
+  bus.serial = readSerial(section, bus);
+  return bus;
+}
+
+std::string settingText(const std::string& setting)
+{
+  return setting;
+}
+
+std::string settingText(unsigned setting)
+{
+  return std::to_string(setting);
+}
+
+/// Fails for \p key if a drive can't use its value. An empty set: the profile doesn't limit it.
+template <typename Setting>
+void checkSetting(const Section& section, const std::string& key, const Setting& setting,
+                  const std::set<Setting>& usable, const InverterConfig& inverter)
+{
+  if (usable.empty() || usable.count(setting) != 0)
+  {
+    return;
+  }
+  std::vector<std::string> names;
+  for (const Setting& value : usable)
+  {
+    names.push_back(settingText(value));
+  }
+  section.fail(key, settingText(setting) + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
+               join(names));
+}
+
+void checkSerial(const Section& section, const wire::SerialSettings& serial, const InverterConfig& inverter,
+                 const drive::Profile& profile)
+{
+  static const std::map<wire::Parity, std::string> PARITIES{ { wire::Parity::None, "none" },
+                                                             { wire::Parity::Even, "even" },
+                                                             { wire::Parity::Odd, "odd" } };
+  checkSetting(section, "baud_rate", serial.baud_rate, profile.baud_rates, inverter);
+  checkSetting(section, "parity", PARITIES.at(serial.parity), profile.parities, inverter);
+  checkSetting(section, "data_bits", serial.data_bits, profile.data_bits, inverter);
+  checkSetting(section, "stop_bits", serial.stop_bits, profile.stop_bits, inverter);
+}
+
+void checkUnique(const Section& entry, const InverterConfig& inverter, const std::vector<ConfiguredInverter>& others)
+{
+  for (const ConfiguredInverter& other : others)
+  {
+    if (other.config.name == inverter.name)
+    {
+      entry.fail("name", "stands twice (node " + std::to_string(other.config.node) + " has it too)", "unique names");
+    }
+    if (other.config.node == inverter.node)
+    {
+      entry.fail("node", "stands twice (" + other.config.name + " has it too)", "unique station numbers");
+    }
+  }
+}
+
+Configuration inNodeOrder(BusConfig bus, std::vector<ConfiguredInverter> inverters)
+{
+  std::sort(inverters.begin(), inverters.end(),
+            [](const ConfiguredInverter& a, const ConfiguredInverter& b) { return a.config.node < b.config.node; });
+  Configuration configuration;
+  configuration.bus = std::move(bus);
+  for (ConfiguredInverter& inverter : inverters)
+  {
+    configuration.bus.inverters.push_back(std::move(inverter.config));
+    configuration.drives.push_back(std::move(inverter.drive));
+  }
+  return configuration;
+}
+}  // namespace
+
+Configuration readConfiguration(const Value& parameters, const std::string& place, const std::string& profile_directory)
+{
+  const Section section(parameters, place);
+  section.refuseUnknownKeys(BUS_KEYS);
+  BusConfig bus = readBus(section);
+  std::vector<ConfiguredInverter> inverters;
+  // "~scan_list[0]" is how ROS writes a private parameter; a file name wants a separator.
+  for (const Section& entry : readScanList(section, place == "~" ? place : place + ": "))
+  {
+    ConfiguredInverter inverter = readInverter(entry, bus, profile_directory);
+    checkUnique(entry, inverter.config, inverters);
+    checkSerial(section, bus.serial, inverter.config, inverter.drive.profile());
+    inverters.push_back(std::move(inverter));
+  }
+  return inNodeOrder(std::move(bus), std::move(inverters));
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "configuration_inverter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <utility>
+
+#include "configuration_yaml.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+/// Names that the node itself uses beside those of the inverters.
+const std::vector<std::string> RESERVED_NAMES{ "bus", "command", "stop", "bus_status", "dump_trace" };
+
+/// Stations that a Modbus request can address at all.
+constexpr int LAST_STATION = 247;
+
+/// A velocity that the profile's maximum allows by arithmetic may miss it by rounding.
+constexpr double ROUNDING = 1e-9;
+
+std::string readName(const Section& entry)
+{
+  static const std::regex GRAPH_NAME("[A-Za-z][A-Za-z0-9_]*");
+  const std::string allowed = "a letter, then letters, digits and _; not " + join(RESERVED_NAMES);
+  entry.require("name", allowed);
+  const std::string name = entry.text("name", "");
+  if (!std::regex_match(name, GRAPH_NAME))
+  {
+    entry.fail("name", "is no legal ROS name", allowed);
+  }
+  if (std::find(RESERVED_NAMES.begin(), RESERVED_NAMES.end(), name) != RESERVED_NAMES.end())
+  {
+    entry.fail("name", "is reserved for the node itself", allowed);
+  }
+  return name;
+}
+
+std::vector<std::string> readConfirm(const Section& entry)
+{
+  const char* const allowed = "a list of names of unconfirmed items, or all";
+  const Value* value = entry.find("confirm");
+  if (value == nullptr || value->type == Value::Type::None)
+  {
+    return {};
+  }
+  if (value->type == Value::Type::Text)
+  {
+    return { value->text };
+  }
+  if (value->type != Value::Type::List)
+  {
+    entry.fail("confirm", "is no list of names", allowed);
+  }
+  std::vector<std::string> names;
+  for (const Value& name : value->list)
+  {
+    if (name.type != Value::Type::Text)
+    {
+      entry.fail("confirm", "holds something else than names", allowed);
+    }
+    names.push_back(name.text);
+  }
+  return names;
+}
+
+drive::ProfileChanges readChanges(const Section& entry)
+{
+  drive::ProfileChanges changes;
+  changes.place = entry.placeOf("drive");
+  changes.confirm = readConfirm(entry);
+  const Value* overrides = entry.find("overrides");
+  if (overrides == nullptr || overrides->type == Value::Type::None)
+  {
+    return changes;
+  }
+  if (overrides->type != Value::Type::Map)
+  {
+    entry.fail("overrides", "is no map", "a map of profile keys");
+  }
+  if (!overrides->map.empty())
+  {
+    changes.overrides_yaml = toYaml(*overrides);
+    changes.place = entry.placeOf("overrides");
+  }
+  return changes;
+}
+
+/// The profile reader names file and line; this adds the entry that asked for the profile.
+drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config, const std::string& profile_directory)
+{
+  try
+  {
+    return drive::loadProfile(config.drive, profile_directory, config.changes);
+  }
+  catch (const drive::ConfigurationError& error)
+  {
+    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + config.drive + "': ";
+    throw drive::ConfigurationError(place + error.what());
+  }
+}
+
+void checkProtocol(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
+{
+  if (profile.protocol != bus.protocol)
+  {
+    entry.fail("drive", "speaks " + profile.protocol + ", the bus " + bus.protocol,
+               "a drive that speaks " + bus.protocol);
+  }
+}
+
+/// A drive that can be started must be one that can be stopped.
+void checkArming(const Section& entry, const drive::Drive& drive)
+{
+  const bool can_run = drive.sequence("forward") != nullptr || drive.sequence("reverse") != nullptr;
+  if (!can_run || drive.sequence("stop") != nullptr)
+  {
+    return;
+  }
+  const std::string missing = drive.missingFor("stop");
+  const std::string key = entry.has("confirm") ? "confirm" : entry.has("overrides") ? "overrides" : "drive";
+  entry.fail(key, "arms run without stop" + (missing.empty() ? std::string() : " (" + missing + " is unconfirmed)"),
+             "run only together with stop" + (missing.empty() ? std::string() : ": confirm or supply " + missing));
+}
+
+double readHzPerUnit(const Section& entry)
+{
+  constexpr double SMALLEST = 1e-6;
+  constexpr double LARGEST = 1e6;
+  const double hz_per_unit = entry.number("hz_per_unit", 1.0, Range{ -LARGEST, LARGEST, false, "Hz per unit" });
+  if (std::abs(hz_per_unit) < SMALLEST)
+  {
+    entry.fail("hz_per_unit", hz_per_unit == 0.0 ? "is 0" : "is too small",
+               "a number from 1e-06 to 1e+06 Hz per unit, negative where the drive is mounted mirrored, never 0");
+  }
+  return hz_per_unit;
+}
+
+void readVelocities(const Section& entry, const drive::Profile& profile, InverterConfig& config)
+{
+  config.hz_per_unit = readHzPerUnit(entry);
+  const double largest = profile.maximum_frequency / std::abs(config.hz_per_unit);
+  const Range range{ 0.0, largest * (1.0 + ROUNDING), true, "(the drive's maximum / |hz_per_unit|)" };
+  config.max_velocity = std::min(entry.number("max_velocity", largest, range), largest);
+  config.min_velocity = entry.number("min_velocity", 0.0, Range{ 0.0, config.max_velocity, false, "(max_velocity)" });
+}
+
+void readTimes(const Section& entry, const drive::Profile& profile, const BusConfig& bus, InverterConfig& config)
+{
+  config.command_timeout = entry.number("command_timeout", config.command_timeout, Range{ 0.0, 3600.0, false, "s" });
+  const double inherited = profile.response_timeout.value_or(bus.response_timeout);
+  config.response_timeout = entry.number("response_timeout", inherited, Range{ 0.0, 10.0, true, "s" });
+}
+
+std::vector<int> readBlock(const Section& entry, const std::vector<int>& fallback)
+{
+  const char* const allowed = "five codes from 0 to 14, as for F875 to F879";
+  const Value* value = entry.find("block_read");
+  if (value == nullptr)
+  {
+    return fallback;
+  }
+  if (value->type != Value::Type::List || value->list.size() != 5)
+  {
+    entry.fail("block_read", "is no list of five", allowed);
+  }
+  std::vector<int> codes;
+  for (const Value& code : value->list)
+  {
+    if (code.type != Value::Type::Integer || code.integer < 0 || code.integer > 14)
+    {
+      entry.fail("block_read", "holds a code that the drive does not have", allowed);
+    }
+    codes.push_back(static_cast<int>(code.integer));
+  }
+  return codes;
+}
+
+void readOptions(const Section& entry, InverterConfig& config)
+{
+  config.rated_current = entry.number("rated_current", Range{ 0.0, 10000.0, true, "A" });
+  config.rated_voltage = entry.number("rated_voltage", Range{ 0.0, 10000.0, true, "V" });
+  config.configure_block = entry.boolean("configure_block", config.configure_block);
+  config.block_read = readBlock(entry, config.block_read);
+  config.stop_unexpected_motion = entry.boolean("stop_unexpected_motion", config.stop_unexpected_motion);
+  config.release_on_exit = entry.boolean("release_on_exit", config.release_on_exit);
+}
+
+std::uint8_t readNode(const Section& entry, const drive::Profile& profile)
+{
+  const auto last = std::min<unsigned>(profile.last_station, LAST_STATION);
+  return static_cast<std::uint8_t>(entry.integer("node", 0, profile.first_station, last));
+}
+}  // namespace
+
+ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, const std::string& profile_directory)
+{
+  InverterConfig config;
+  config.name = readName(entry);
+  // Before the profile is read, so that nonsense is named as such; its own range comes with the profile.
+  entry.require("node", "a station number");
+  entry.integer("node", 0, 1, LAST_STATION);
+  entry.require("drive", "the name of a profile or an absolute path to one");
+  config.drive = entry.text("drive", "");
+  config.changes = readChanges(entry);
+  drive::Drive drive(loadProfileOf(entry, config, profile_directory));
+  const drive::Profile& profile = drive.profile();
+  checkProtocol(entry, profile, bus);
+  config.node = readNode(entry, profile);
+  checkArming(entry, drive);
+  readVelocities(entry, profile, config);
+  readTimes(entry, profile, bus, config);
+  readOptions(entry, config);
+  return ConfiguredInverter{ std::move(config), std::move(drive) };
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/coordinator.h"
+
+#include <algorithm>
+
+#include "inverter_bus/bus/budget.h"
+
+// The loop's side of the coordinator: which exchange is next. What follows from its end stands in
+// coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+constexpr double PROBE_SHARE = 0.05;
+// Contract, rule 3.7: an inverter is found again within 3 s; with a little margin.
+constexpr double PROBE_ROUND_S = 2.7;
+constexpr double SHORTEST_PROBE_TIMEOUT_S = 0.015;
+// Every so many probes waits the whole response_timeout, for a drive that has become slow.
+constexpr unsigned FULL_PROBE_EVERY = 4;
+// A pick that turned out to have nothing to send is dropped; more in a row than this would be a mistake of ours.
+constexpr int MOST_EMPTY_PICKS = 100;
+constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
+constexpr double BUS_STATUS_SHORTEST_S = 0.1;
+constexpr double BUS_STATUS_LONGEST_S = 0.9;
+}  // namespace
+
+Coordinator::Coordinator(const Configuration& configuration, const wire::Line& line)
+  : configuration_(configuration), line_(line)
+{
+  for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
+  {
+    inverters_.push_back(std::make_unique<Inverter>(index, configuration.bus.inverters[index],
+                                                    configuration.drives[index], configuration.bus.offline_after));
+  }
+  Scheduler::Settings settings;
+  settings.inverters = inverters_.size();
+  settings.interval = seconds(configuration.bus.interval);
+  settings.idle_divisor = static_cast<unsigned>(configuration.bus.idle_divisor);
+  settings.probe_share = PROBE_SHARE;
+  scheduler_ = std::make_unique<Scheduler>(settings);
+  last_published_.resize(inverters_.size());
+  shutdown_tried_.resize(inverters_.size(), false);
+  released_.resize(inverters_.size(), false);
+  longest_exchange_ = Budget(configuration, line).longestExchange();
+}
+
+Coordinator::~Coordinator() = default;
+
+// --- time ------------------------------------------------------------------------------------------------------------
+
+void Coordinator::tick(TimePoint now)
+{
+  watchDeadMen(now);
+  expireJobs(now);
+  finishStopCalls(now);
+  publishSlowly(now);
+}
+
+void Coordinator::watchDeadMen(TimePoint now)
+{
+  for (const auto& inverter : inverters_)
+  {
+    if (inverter->interlock.deadManDue(now) && !inverter->stop.pending())
+    {
+      requestStop(now, *inverter, StopMode::Decelerate, true,
+                  "no command for " + std::to_string(inverter->config.command_timeout) + " s (command_timeout)");
+    }
+  }
+}
+
+void Coordinator::expireJobs(TimePoint now)
+{
+  std::vector<CommandId> expired;
+  for (const auto& entry : jobs_)
+  {
+    if (now >= entry.second.expires)
+    {
+      expired.push_back(entry.first);
+    }
+  }
+  for (const CommandId id : expired)
+  {
+    RunningJob& running = jobs_.at(id);
+    Answer late = running.job->answer();
+    late.success = false;
+    late.error_id = late.error_id != 0 ? late.error_id : wire::ERROR_TIMEOUT;
+    late.message = late.message.empty() ? "not finished within the time that this service may take" : late.message;
+    late.message += inverters_[running.inverter]->stop.pending() ? "; a stop is not confirmed yet" : "";
+    scheduler_->erase(id);
+    endJob(id, late);
+  }
+}
+
+void Coordinator::publishSlowly(TimePoint now)
+{
+  for (const auto& inverter : inverters_)
+  {
+    if (inverter->offline() && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
+    {
+      publish(now, *inverter);
+    }
+  }
+  const Duration since = now - last_bus_status_;
+  const bool cycle_done = scheduler_->cycles() != published_cycle_;
+  if (cycle_done)
+  {
+    meter_.cycle(scheduler_->cycleTime());
+  }
+  if ((cycle_done && since >= seconds(BUS_STATUS_SHORTEST_S)) || since >= seconds(BUS_STATUS_LONGEST_S))
+  {
+    outputs_.bus_statuses.push_back(busStatus(now));
+    last_bus_status_ = now;
+  }
+  published_cycle_ = scheduler_->cycles();
+}
+
+TimePoint Coordinator::earliestDeadMan(TimePoint wake) const
+{
+  for (const auto& inverter : inverters_)
+  {
+    if (const auto at = inverter->interlock.deadManAt())
+    {
+      wake = std::min(wake, *at);
+    }
+  }
+  return wake;
+}
+
+// --- the next exchange -----------------------------------------------------------------------------------------------
+
+std::vector<InverterView> Coordinator::views(TimePoint now) const
+{
+  std::vector<InverterView> views;
+  views.reserve(inverters_.size());
+  for (const auto& inverter : inverters_)
+  {
+    views.push_back(inverter->view(now, longest_exchange_));
+  }
+  return views;
+}
+
+std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint& wake)
+{
+  tick(now);
+  for (int attempt = 0; attempt < MOST_EMPTY_PICKS; ++attempt)
+  {
+    std::optional<Current> current = composeBroadcast();
+    if (!current)
+    {
+      const Pick pick = shutting_down_ ? pickShutdown(now) : scheduler_->next(now, views(now));
+      if (pick.what == Pick::What::Nothing)
+      {
+        wake = std::max(earliestDeadMan(pick.wake), now);
+        return std::nullopt;
+      }
+      current = compose(now, pick);
+    }
+    if (current && makeSafe(now, *current))
+    {
+      current_ = current;
+      Exchange exchange;
+      exchange.request = current->request;
+      if (current->request.broadcast)
+      {
+        exchange.turnaround = seconds(inverters_.front()->drive.profile().broadcast_turnaround);
+      }
+      return exchange;
+    }
+  }
+  wake = now + seconds(BUS_STATUS_SHORTEST_S);
+  return std::nullopt;
+}
+
+std::optional<Coordinator::Current> Coordinator::composeBroadcast()
+{
+  if (!broadcast_due_)
+  {
+    return std::nullopt;
+  }
+  broadcast_due_ = false;
+  const Inverter& any = *inverters_.front();
+  const drive::Step& step = any.drive.sequence("stop")->steps.front();
+  Current current;
+  current.purpose = Purpose::Broadcast;
+  current.request = any.drive.write(0, step.point, step.value.value_or(0));
+  current.request.broadcast = true;
+  return current;
+}
+
+Pick Coordinator::pickShutdown(TimePoint now)
+{
+  Pick pick;
+  pick.what = Pick::What::Stop;
+  const Inverter* best = nullptr;
+  for (const auto& inverter : inverters_)
+  {
+    const bool live = inverter->stop.pending() && !inverter->offline();
+    if (live && (best == nullptr || inverter->stop.attempts() < best->stop.attempts()))
+    {
+      best = inverter.get();
+    }
+  }
+  for (const auto& inverter : inverters_)
+  {
+    const bool one_frame = inverter->stop.pending() && inverter->offline() && !shutdown_tried_[inverter->index];
+    if (best == nullptr && one_frame)
+    {
+      best = inverter.get();
+      shutdown_tried_[best->index] = true;
+    }
+  }
+  for (const auto& inverter : inverters_)
+  {
+    if (best == nullptr && releaseDue(*inverter))
+    {
+      best = inverter.get();
+      pick.what = Pick::What::Background;
+    }
+  }
+  if (best == nullptr)
+  {
+    pick.what = Pick::What::Nothing;
+    pick.wake = now;
+    return pick;
+  }
+  pick.inverter = best->index;
+  return pick;
+}
+
+bool Coordinator::releaseDue(const Inverter& inverter) const
+{
+  return inverter.config.release_on_exit && !released_[inverter.index] && !inverter.offline() &&
+         !inverter.stop.pending() && inverter.drive.sequence("release") != nullptr;
+}
+
+std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pick& pick)
+{
+  Current current;
+  current.pick = pick;
+  current.inverter = pick.inverter;
+  Inverter& inverter = *inverters_[pick.inverter];
+  switch (pick.what)
+  {
+    case Pick::What::Stop:
+      current.purpose = Purpose::StopFrame;
+      current.request = inverter.prepared(inverter.stop.next());
+      if (pick.probe)
+      {
+        current.request.response_timeout = std::min(current.request.response_timeout, probeTimeout(inverter));
+      }
+      return current;
+    case Pick::What::Command:
+      return jobs_.count(pick.command) != 0 ? composeJob(pick) : composeVelocity(pick);
+    case Pick::What::Refresh:
+      current.purpose = Purpose::Refresh;
+      current.request = inverter.prepared(
+          inverter.drive.read(inverter.config.node, inverter.refresh.next(now, scheduler_->cycleTime())));
+      return current;
+    case Pick::What::Probe:
+      return composeProbe(pick);
+    case Pick::What::Background:
+      if (shutting_down_)
+      {
+        const drive::Step& step = inverter.drive.sequence("release")->steps.front();
+        released_[pick.inverter] = true;
+        current.purpose = Purpose::Release;
+        current.request = inverter.prepared(
+            inverter.drive.write(inverter.config.node, step.point, step.value.value_or(0)));
+        return current;
+      }
+      current.purpose = Purpose::Setting;
+      current.request = inverter.prepared(inverter.settings.next());
+      return current;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<Coordinator::Current> Coordinator::composeVelocity(const Pick& pick)
+{
+  for (const std::size_t member : scheduler_->members(pick.command))
+  {
+    Inverter& inverter = *inverters_[member];
+    if (const auto write = inverter.movement.next())
+    {
+      Current current;
+      current.pick = pick;
+      current.purpose = Purpose::Velocity;
+      current.inverter = member;
+      current.write = *write;
+      current.request = inverter.prepared(write->request);
+      return current;
+    }
+    scheduler_->eraseVelocity(member);
+  }
+  return std::nullopt;
+}
+
+std::optional<Coordinator::Current> Coordinator::composeJob(const Pick& pick)
+{
+  RunningJob& running = jobs_.at(pick.command);
+  Current current;
+  current.pick = pick;
+  current.purpose = Purpose::Job;
+  current.inverter = running.inverter;
+  current.job = pick.command;
+  current.request = inverters_[running.inverter]->prepared(running.job->next());
+  return current;
+}
+
+Coordinator::Current Coordinator::composeProbe(const Pick& pick)
+{
+  Inverter& inverter = *inverters_[pick.inverter];
+  Current current;
+  current.pick = pick;
+  current.purpose = Purpose::Probe;
+  current.inverter = pick.inverter;
+  current.request = inverter.probe(++loopback_number_, probeTimeout(inverter));
+  ++inverter.probes;
+  return current;
+}
+
+/// Probes share 5 % of the bus time, and each dead inverter shall be asked every 3 s: the more are dead, the shorter each
+/// one may be waited for, but never shorter than the inverter has ever needed. Its reply still counts when it comes late.
+Duration Coordinator::probeTimeout(const Inverter& inverter) const
+{
+  const Duration full = seconds(inverter.config.response_timeout);
+  if (inverter.probes % FULL_PROBE_EVERY == FULL_PROBE_EVERY - 1)
+  {
+    return full;
+  }
+  const auto dead = std::count_if(inverters_.begin(), inverters_.end(),
+                                  [](const std::unique_ptr<Inverter>& other) { return other->offline(); });
+  const wire::Request bare = inverter.probe(0, Duration::zero());
+  const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<long>(dead, 1)));
+  const Duration needed = inverter.slowestReply() + inverter.slowestReply() / 2;
+  const Duration least = std::max(needed, seconds(SHORTEST_PROBE_TIMEOUT_S));
+  return std::min(full, std::max(least, share - line_.costUnanswered(bare)));
+}
+
+/// Rule 3.9: after a time-out nothing of the same shape is asked of this station before its late reply, or a loop-back
+/// with a fresh number, has come. A stop's write is exempt: its read-back decides.
+bool Coordinator::makeSafe(TimePoint now, Current& current)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
+  if (current.request.broadcast || stop_write || line_.mayAsk(current.request))
+  {
+    return true;
+  }
+  if (const auto loopback = inverter.drive.loopback(inverter.config.node, ++loopback_number_))
+  {
+    const Duration timeout = current.request.response_timeout;
+    current.request = inverter.prepared(*loopback);
+    current.request.response_timeout = timeout;
+    current.resync = true;
+    return true;
+  }
+  if (current.purpose == Purpose::StopFrame)
+  {
+    return true;
+  }
+  const TimePoint allowed = std::max(line_.mayAskAt(current.request), now + std::chrono::milliseconds(1));
+  if (current.purpose == Purpose::Velocity || current.purpose == Purpose::Job)
+  {
+    scheduler_->postpone(current.pick.command, allowed);
+  }
+  else
+  {
+    inverter.refresh_not_before = allowed;
+  }
+  return false;
+}
+
+void Coordinator::sent(TimePoint now)
+{
+  if (!current_)
+  {
+    return;
+  }
+  last_node_ = current_->request.station;
+  Inverter& inverter = *inverters_[current_->inverter];
+  if (current_->purpose == Purpose::Velocity && !current_->resync)
+  {
+    inverter.movement.sent(current_->write);
+  }
+  if (current_->purpose == Purpose::Broadcast)
+  {
+    noteStopLatency(now - broadcast_requested_);
+  }
+  if (current_->purpose == Purpose::StopFrame && !current_->resync)
+  {
+    if (const auto latency = inverter.stop.sent(now))
+    {
+      noteStopLatency(*latency);
+    }
+  }
+}
+
+void Coordinator::noteStopLatency(Duration latency)
+{
+  stop_latency_max_ = std::max(stop_latency_max_, latency);
+  if (latency > longest_exchange_ + line_.timing().characters(64))
+  {
+    outputs_.traces.push_back("stop took " + std::to_string(toSeconds(latency)) + " s to the wire");
+  }
+}
+}  // namespace bus
+}  // namespace inverter_bus

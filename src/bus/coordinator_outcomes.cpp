@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
+
+#include "inverter_bus/bus/coordinator.h"
+
+// What follows from the end of an exchange.
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// A velocity unit that newer and newer targets keep going makes room for others after so many frames per inverter.
+constexpr unsigned MOST_FRAMES_PER_UNIT = 8;
+
+bool alive(const wire::Reply& reply)
+{
+  return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
+}
+}  // namespace
+
+/// Lost or damaged: is it to be repeated?
+bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
+{
+  if (alive(reply))
+  {
+    tries = 0;
+    return false;
+  }
+  if (++tries <= configuration_.bus.retries)
+  {
+    return true;
+  }
+  tries = 0;
+  return false;
+}
+
+void Coordinator::done(const wire::Reply& reply)
+{
+  if (!current_)
+  {
+    return;
+  }
+  const Current current = *current_;
+  current_.reset();
+  if (reply.outcome == wire::Outcome::PortLost)
+  {
+    portLost(reply.finished_at);
+    return;
+  }
+  last_error_ = alive(reply) ? 0 : reply.error_id;
+  if (current.purpose == Purpose::Broadcast)
+  {
+    meter_.exchange(reply.sent_at, reply.finished_at, Duration{ 0 });
+    return;
+  }
+  Inverter& inverter = *inverters_[current.inverter];
+  if (alive(reply) && inverter.answered(reply))
+  {
+    log(Level::Ok, inverter.config.name + ": online");
+  }
+  if (current.resync && alive(reply))
+  {
+    // The line is in step again: the real request keeps its turn.
+    finishExchange(current, reply, true);
+    return;
+  }
+  switch (current.purpose)
+  {
+    case Purpose::StopFrame:
+      doneStop(current, reply);
+      break;
+    case Purpose::Velocity:
+      doneVelocity(current, reply);
+      break;
+    case Purpose::Job:
+      doneJob(current, reply);
+      break;
+    case Purpose::Refresh:
+      doneRefresh(current, reply);
+      break;
+    case Purpose::Setting:
+      doneSetting(current, reply);
+      break;
+    default:
+      finishExchange(current, reply, false);
+      break;
+  }
+}
+
+void Coordinator::finishExchange(const Current& current, const wire::Reply& reply, bool more)
+{
+  Duration cost{ 0 };
+  if (current.purpose == Purpose::Refresh && alive(reply))
+  {
+    cost = line_.cost(current.request, Duration{ 0 });
+  }
+  meter_.exchange(reply.sent_at, reply.finished_at, cost);
+  if (shutting_down_)
+  {
+    return;
+  }
+  scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, alive(reply));
+}
+
+void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  if (inverter.failed(now, error_id))
+  {
+    wentOffline(now, inverter, error_id);
+  }
+}
+
+void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  scheduler_->eraseVelocity(inverter.index);
+  failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
+  if (connected_)
+  {
+    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id));
+    outputs_.traces.push_back(inverter.config.name + " went offline");
+  }
+  if (inverter.movement.runPossible())
+  {
+    requestStop(now, inverter, StopMode::Decelerate, true, "it may still run while it can't be reached");
+  }
+  publish(now, inverter);
+}
+
+// --- stop ------------------------------------------------------------------------------------------------------------
+
+void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  finishExchange(current, reply, false);
+  if (!inverter.stop.pending())
+  {
+    // A fresh command took the place of a stop by 0 while its frame was on the wire: write all words anew.
+    inverter.movement.forgetWords();
+    return;
+  }
+  const StopJob::Progress progress = inverter.stop.done(reply);
+  if (progress == StopJob::Progress::Confirmed)
+  {
+    stopConfirmed(reply.finished_at, inverter);
+  }
+  if (!alive(reply))
+  {
+    noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
+// --- velocity --------------------------------------------------------------------------------------------------------
+
+void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  const TimePoint now = reply.finished_at;
+  const bool cancelled = !scheduler_->velocityWaits(current.inverter);
+  if (reply.outcome == wire::Outcome::Ok && !cancelled)
+  {
+    inverter.movement.confirmed(current.write, now);
+    inverter.velocity_tries = 0;
+    ++inverter.velocity_frames;
+    finishVelocity(current, reply);
+    return;
+  }
+  inverter.movement.doubtful(current.write);
+  if (repeat(inverter.velocity_tries, reply) && !cancelled)
+  {
+    finishExchange(current, reply, true);
+    return;
+  }
+  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
+  scheduler_->eraseVelocity(current.inverter);
+  finishExchange(current, reply, !scheduler_->members(current.pick.command).empty());
+  if (reply.outcome == wire::Outcome::Ok)
+  {
+    return;
+  }
+  if (!cancelled)
+  {
+    const bool exception = reply.outcome == wire::Outcome::Exception;
+    inverter.refuseCommand(reply.error_id,
+                           exception ? inverter.drive.exceptionText(reply.error_id) : errorText(reply.error_id));
+    inverter.movement.giveUp();
+    if (zero || current.write.starts)
+    {
+      // Nobody knows whether the motor runs: it shall not.
+      requestStop(now, inverter, StopMode::Decelerate, false, "");
+    }
+  }
+  if (!alive(reply))
+  {
+    noteLost(now, inverter, reply.error_id);
+  }
+}
+
+void Coordinator::finishVelocity(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  const bool complete = !inverter.movement.next();
+  const bool too_long = inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  if (complete || too_long)
+  {
+    scheduler_->eraseVelocity(current.inverter);
+  }
+  finishExchange(current, reply, !scheduler_->members(current.pick.command).empty());
+  if (!complete && too_long)
+  {
+    inverter.velocity_frames = 0;
+    WaitingCommand waiting;
+    waiting.id = next_command_++;
+    waiting.inverters = { inverter.index };
+    waiting.not_before = reply.finished_at;
+    scheduler_->push(waiting);
+  }
+  if (complete && inverter.movement.zeroUnverified() && !inverter.drive.runBlock())
+  {
+    inverter.movement.stopped(reply.finished_at);
+    inverter.interlock.resting();
+  }
+}
+
+// --- services --------------------------------------------------------------------------------------------------------
+
+void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
+{
+  const auto found = jobs_.find(current.job);
+  if (found == jobs_.end())
+  {
+    // Its bound passed, or the inverter went offline, while the frame was on the wire.
+    finishExchange(current, reply, false);
+    return;
+  }
+  RunningJob& running = found->second;
+  Inverter& inverter = *inverters_[current.inverter];
+  if (repeat(running.tries, reply))
+  {
+    finishExchange(current, reply, true);
+    return;
+  }
+  const Job::Progress progress = alive(reply) ? running.job->done(reply) : running.job->lost(reply);
+  finishExchange(current, reply, false);
+  advanceJob(reply.finished_at, current.job, progress);
+  if (!alive(reply))
+  {
+    noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
+void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress)
+{
+  RunningJob& running = jobs_.at(id);
+  Inverter& inverter = *inverters_[running.inverter];
+  const auto* reset = dynamic_cast<const ResetJob*>(running.job.get());
+  if (reset != nullptr && reset->resetting())
+  {
+    // Resetting clears the drive's words, and it may be deaf for a while.
+    inverter.expectSilence(now + seconds(inverter.drive.profile().deaf_after_reset));
+    inverter.movement.forgetWords();
+  }
+  if (progress == Job::Progress::Done)
+  {
+    if (const auto* write = dynamic_cast<const WriteParameterJob*>(running.job.get()))
+    {
+      inverter.settings.reread(write->parameter().name);
+    }
+    endJob(id, Answer(running.job->answer()));
+    return;
+  }
+  if (progress == Job::Progress::NeedsStop)
+  {
+    requestStop(now, inverter, StopMode::Decelerate, true, "RUN must be off before the trip is reset");
+  }
+  queueJob(id, now + running.job->pause());
+}
+
+// --- refresh ---------------------------------------------------------------------------------------------------------
+
+void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (alive(reply))
+  {
+    inverter.refresh_tries = 0;
+    const bool more = reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) :
+                                                           inverter.refresh.refused(reply);
+    finishExchange(current, reply, more);
+    if (inverter.refresh.takeComplete())
+    {
+      judgeRefresh(reply.finished_at, inverter);
+    }
+    return;
+  }
+  if (repeat(inverter.refresh_tries, reply))
+  {
+    finishExchange(current, reply, true);
+    return;
+  }
+  inverter.refresh.failed();
+  finishExchange(current, reply, false);
+  const bool was_offline = inverter.offline();
+  noteLost(reply.finished_at, inverter, reply.error_id);
+  if (!was_offline && !inverter.offline() && inverter.known())
+  {
+    // Shows the error beside the last good values, which keep their stamp.
+    publish(reply.finished_at, inverter);
+  }
+}
+
+void Coordinator::judgeRefresh(TimePoint now, Inverter& inverter)
+{
+  const Judgement judgement = inverter.judge(now);
+  if (judgement.tripped)
+  {
+    log(Level::Error, inverter.config.name + ": tripped: " + judgement.stop_reason);
+    outputs_.traces.push_back(inverter.config.name + " tripped");
+  }
+  if (!judgement.stop_reason.empty())
+  {
+    requestStop(now, inverter, StopMode::Decelerate, true, judgement.stop_reason);
+  }
+  else if (judgement.zero_failed)
+  {
+    requestStop(now, inverter, StopMode::Decelerate, false, "");
+  }
+  publish(now, inverter);
+}
+
+void Coordinator::doneSetting(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (alive(reply))
+  {
+    inverter.settings_tries = 0;
+    inverter.settings.done(reply);
+    finishExchange(current, reply, false);
+    return;
+  }
+  const bool again = repeat(inverter.settings_tries, reply);
+  finishExchange(current, reply, false);
+  if (!again)
+  {
+    noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
+// --- port and second masters -----------------------------------------------------------------------------------------
+
+void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
+{
+  for (const auto& inverter : inverters_)
+  {
+    if (inverter->config.node != late.station)
+    {
+      continue;
+    }
+    inverter->lateReply(late.delay);
+    if (inverter->offline())
+    {
+      wire::Reply sign_of_life;
+      sign_of_life.outcome = wire::Outcome::Ok;
+      sign_of_life.finished_at = now;
+      sign_of_life.turnaround = std::min(late.delay, seconds(inverter->config.response_timeout));
+      inverter->answered(sign_of_life);
+      log(Level::Ok, inverter->config.name + ": online (its reply came late)");
+    }
+  }
+}
+
+void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found)
+{
+  if (counters.foreign_frames != counters_.foreign_frames)
+  {
+    foreign_at_ = now;
+  }
+  counters_ = counters;
+  echo_found_ = echo_found;
+}
+
+void Coordinator::portOpened(TimePoint now)
+{
+  connected_ = true;
+  port_complained_ = false;
+  port_error_.clear();
+  last_error_ = 0;
+  if (ever_opened_)
+  {
+    ++reconnects_;
+  }
+  ever_opened_ = true;
+  scheduler_->restartCycle(now);
+  log(Level::Ok, "port " + configuration_.bus.port + " is open");
+  for (const auto& inverter : inverters_)
+  {
+    inverter->refresh_not_before = now;
+  }
+}
+
+void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_use)
+{
+  last_error_ = wire::ERROR_PORT_LOST;
+  port_error_ = error;
+  if (!port_complained_)
+  {
+    port_complained_ = true;
+    log(in_use ? Level::Warn : Level::Error, error + "; the node keeps trying");
+    portLost(now);
+  }
+}
+
+void Coordinator::portLost(TimePoint now)
+{
+  current_.reset();
+  if (connected_)
+  {
+    port_error_ = "port " + configuration_.bus.port + " is gone";
+    log(Level::Error, port_error_ + "; the node keeps trying");
+    port_complained_ = true;
+  }
+  connected_ = false;
+  last_error_ = wire::ERROR_PORT_LOST;
+  broadcast_due_ = false;
+  for (const auto& inverter : inverters_)
+  {
+    if (!inverter->offline())
+    {
+      inverter->goOffline(wire::ERROR_PORT_LOST);
+      wentOffline(now, *inverter, wire::ERROR_PORT_LOST);
+    }
+    inverter->noteExchangeError(wire::ERROR_PORT_LOST);
+  }
+}
+
+// --- shutdown --------------------------------------------------------------------------------------------------------
+
+void Coordinator::beginShutdown(TimePoint now)
+{
+  shutting_down_ = true;
+  const double two_exchanges_each = 2.0 * toSeconds(longest_exchange_) * static_cast<double>(inverters_.size());
+  shutdown_deadline_ = now + seconds(std::min(10.0, std::max(2.0, two_exchanges_each)));
+  for (const auto& inverter : inverters_)
+  {
+    failJobs(inverter->index, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));
+    scheduler_->eraseVelocity(inverter->index);
+    if (inverter->movement.runPossible() || inverter->stop.pending())
+    {
+      requestStop(now, *inverter, StopMode::Decelerate, true, "");
+    }
+    inverter->movement.drop();
+  }
+}
+
+bool Coordinator::shutdownDone(TimePoint now)
+{
+  if (now >= shutdown_deadline_)
+  {
+    return true;
+  }
+  return std::none_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
+    const bool untried = !connected_ || !inverter->offline() || !shutdown_tried_[inverter->index];
+    return (inverter->stop.pending() && untried) || (connected_ && releaseDue(*inverter));
+  });
+}
+
+std::vector<std::string> Coordinator::endShutdown()
+{
+  std::vector<std::string> unconfirmed;
+  for (const auto& inverter : inverters_)
+  {
+    if (inverter->stop.pending() || inverter->movement.runPossible())
+    {
+      unconfirmed.push_back(stopProblem(*inverter));
+    }
+  }
+  for (const StopCall& call : stop_calls_)
+  {
+    refuseCall(call.callback, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));
+  }
+  stop_calls_.clear();
+  return unconfirmed;
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <cstdio>
+
+#include "inverter_bus/bus/budget.h"
+#include "inverter_bus/bus/coordinator.h"
+
+// What the coordinator tells: status, diagnostics, answers.
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+constexpr double FOREIGN_SHOWN_S = 60.0;
+
+std::string rounded(double value, const char* format)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+}  // namespace
+
+void Coordinator::log(Level level, const std::string& text)
+{
+  outputs_.log.push_back({ level, text });
+}
+
+void Coordinator::publish(TimePoint now, const Inverter& inverter)
+{
+  outputs_.statuses.push_back(inverter.status(now));
+  last_published_[inverter.index] = now;
+}
+
+BusStatus Coordinator::busStatus(TimePoint now) const
+{
+  BusStatus status;
+  status.connected = connected_;
+  status.busy = connected_;
+  status.node = last_node_;
+  status.error_id = group_error_ != 0 ? group_error_ : last_error_;
+  status.error = status.error_id != 0;
+  status.counters = counters_;
+  status.reconnects = reconnects_;
+  status.cycle_time = toSeconds(scheduler_->cycleTime());
+  status.utilization = meter_.utilization(now);
+  status.efficiency = meter_.efficiency();
+  status.stop_latency_max = toSeconds(stop_latency_max_);
+  for (const auto& inverter : inverters_)
+  {
+    if (inverter->offline())
+    {
+      status.offline_nodes.push_back(inverter->config.node);
+    }
+  }
+  return status;
+}
+
+Outputs Coordinator::takeOutputs()
+{
+  Outputs outputs;
+  std::swap(outputs, outputs_);
+  return outputs;
+}
+
+PendingAnswers Coordinator::takeAnswers()
+{
+  PendingAnswers answers;
+  std::swap(answers, answers_);
+  return answers;
+}
+
+std::vector<Finding> Coordinator::budget() const
+{
+  return Budget(configuration_, line_).findings();
+}
+
+Report Coordinator::report(TimePoint now) const
+{
+  Report report;
+  report.bus = busStatus(now);
+  const Budget budget(configuration_, line_);
+  if (!connected_)
+  {
+    report.findings.push_back({ Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" :
+                                                                     port_error_) +
+                                                  "; plug it in or check its name, rights and settings" });
+  }
+  if (counters_.foreign_frames > 0 && now - foreign_at_ < seconds(FOREIGN_SHOWN_S))
+  {
+    report.findings.push_back({ Level::Warn, "frames that this node did not ask for are on the line: look for a second "
+                                             "master (" + std::to_string(counters_.foreign_frames) + " so far)" });
+  }
+  if (scheduler_->pauseWasCut())
+  {
+    report.findings.push_back({ Level::Warn, "interval is longer than a drive's own communication time-out allows and is "
+                                             "cut short" });
+  }
+  for (const Finding& finding : budget.findings())
+  {
+    if (finding.level != Level::Ok)
+    {
+      report.findings.push_back(finding);
+    }
+  }
+  report.values.emplace_back("port", configuration_.bus.port);
+  report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
+  report.values.emplace_back("computed cycle", rounded(toSeconds(budget.cycle()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
+  report.values.emplace_back("worst stop latency, computed", rounded(toSeconds(budget.worstStop()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
+  report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
+  report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));
+  for (const auto& inverter : inverters_)
+  {
+    InverterReport entry;
+    entry.name = inverter->config.name;
+    entry.node = inverter->config.node;
+    entry.status = inverter->status(now);
+    entry.findings = inverter->findings(now);
+    entry.values = inverter->values(now);
+    const auto timeout = inverter->settings.driveTimeout();
+    if (timeout && !inverter->drive.profile().communication_loss.timeout_parameter.empty())
+    {
+      if (const auto finding = budget.judgeDriveTimeout(entry.name, *timeout))
+      {
+        entry.findings.push_back(*finding);
+      }
+    }
+    report.inverters.push_back(entry);
+  }
+  return report;
+}
+
+std::string errorText(std::uint16_t error_id)
+{
+  switch (error_id)
+  {
+    case ERROR_NONE:
+      return "normal completion";
+    case wire::ERROR_TIMEOUT:
+      return "no reply in time";
+    case wire::ERROR_DAMAGED:
+      return "damaged or foreign reply";
+    case wire::ERROR_PORT_LOST:
+      return "the port is gone";
+    case ERROR_OUT_OF_RANGE:
+      return "an input is out of range";
+    case ERROR_OFFLINE:
+      return "the inverter is offline";
+    case ERROR_CANCELLED:
+      return "cancelled by a stop";
+    case ERROR_SHUTTING_DOWN:
+      return "the node is shutting down";
+    case ERROR_NOT_OFFERED:
+      return "not offered by this drive";
+    case ERROR_LOCKED:
+      return "locked: send 0, or stay silent for a moment, before the next movement";
+    case ERROR_NOT_ARMED:
+      return "not armed: values of the profile are missing or unconfirmed";
+    default:
+      break;
+  }
+  char text[48];
+  if (error_id >= 0x8000)
+  {
+    std::snprintf(text, sizeof text, "the drive answered exception %02XH", error_id & 0xFFU);
+    return text;
+  }
+  std::snprintf(text, sizeof text, "response code %04X", error_id);
+  return text;
+}
+}  // namespace bus
+}  // namespace inverter_bus

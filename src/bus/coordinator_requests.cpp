@@ -1,0 +1,600 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
+#include <array>
+
+#include "inverter_bus/bus/budget.h"
+#include "inverter_bus/bus/coordinator.h"
+
+// What users ask of the bus: velocities, stops and services.
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+/// Contract, section 2: which id counts if several apply.
+int rank(std::uint16_t error_id)
+{
+  constexpr std::array<std::uint16_t, 7> ORDER{ ERROR_SHUTTING_DOWN, ERROR_OUT_OF_RANGE, ERROR_NOT_OFFERED,
+                                                ERROR_NOT_ARMED,     ERROR_OFFLINE,      ERROR_CANCELLED,
+                                                ERROR_LOCKED };
+  return static_cast<int>(std::find(ORDER.begin(), ORDER.end(), error_id) - ORDER.begin());
+}
+}  // namespace
+
+// --- velocity --------------------------------------------------------------------------------------------------------
+
+std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publisher& publisher,
+                                    JudgedVelocity& judged) const
+{
+  const Inverter& inverter = *inverters_[index];
+  if (judged.target.zero && judged.error_id == 0)
+  {
+    return 0;
+  }
+  if (shutting_down_)
+  {
+    judged.error_id = ERROR_SHUTTING_DOWN;
+  }
+  if (judged.error_id != 0)
+  {
+    judged.text = judged.text.empty() ? errorText(judged.error_id) : judged.text;
+    return judged.error_id;
+  }
+  if (inverter.offline())
+  {
+    judged.error_id = ERROR_OFFLINE;
+  }
+  else
+  {
+    switch (inverter.interlock.judge(now, publisher))
+    {
+      case Permission::Offline:
+        judged.error_id = ERROR_OFFLINE;
+        break;
+      case Permission::StopPending:
+        judged.error_id = ERROR_CANCELLED;
+        break;
+      case Permission::Locked:
+        judged.error_id = ERROR_LOCKED;
+        break;
+      default:
+        break;
+    }
+  }
+  judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
+  return judged.error_id;
+}
+
+std::uint16_t Coordinator::judgeGroup(TimePoint now, const VelocityCommand& command,
+                                      std::vector<JudgedVelocity>& judged, bool& repeat)
+{
+  std::uint16_t worst = 0;
+  for (const auto& target : command.targets)
+  {
+    const Inverter& inverter = *inverters_[target.first];
+    JudgedVelocity one = inverter.movement.judge(target.second);
+    const bool zero = one.error_id == 0 && one.target.zero;
+    repeat = repeat || (!zero && inverter.interlock.judge(now, command.publisher) == Permission::Repeat);
+    const std::uint16_t error_id = judgeOne(now, target.first, command.publisher, one);
+    if (error_id != 0 && (worst == 0 || rank(error_id) < rank(worst)))
+    {
+      worst = error_id;
+    }
+    judged.push_back(one);
+  }
+  return worst;
+}
+
+std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command)
+{
+  std::vector<JudgedVelocity> judged;
+  bool repeat = false;
+  const std::uint16_t error_id = judgeGroup(now, command, judged, repeat);
+  if (repeat)
+  {
+    // An old message of a latched publisher is no command at all; only its zeros still stop what can be stopped.
+    for (std::size_t position = 0; position < judged.size(); ++position)
+    {
+      if (judged[position].error_id == 0 && judged[position].target.zero)
+      {
+        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher },
+                        { judged[position] }, false);
+      }
+    }
+    return 0;
+  }
+  applyVelocities(now, command, judged, error_id != 0);
+  if (command.targets.size() > 1)
+  {
+    group_error_ = error_id;
+  }
+  if (error_id == 0)
+  {
+    return 0;
+  }
+  for (std::size_t position = 0; position < judged.size(); ++position)
+  {
+    Inverter& inverter = *inverters_[command.targets[position].first];
+    const std::string& text = judged[position].text;
+    inverter.refuseCommand(error_id, text.empty() ? "the group was refused: " + errorText(error_id) : text);
+  }
+  return error_id;
+}
+
+void Coordinator::applyVelocities(TimePoint now, const VelocityCommand& command,
+                                  const std::vector<JudgedVelocity>& judged, bool refused)
+{
+  WaitingCommand waiting;
+  waiting.kind = CommandKind::Velocity;
+  for (std::size_t position = 0; position < judged.size(); ++position)
+  {
+    Inverter& inverter = *inverters_[command.targets[position].first];
+    const JudgedVelocity& one = judged[position];
+    bool moves = false;
+    if (one.error_id == 0 && one.target.zero)
+    {
+      moves = applyZero(now, inverter, command.publisher, one.target);
+      waiting.urgent = waiting.urgent || moves;
+    }
+    else if (refused)
+    {
+      inverter.interlock.commanded(now, command.publisher, false);
+    }
+    else
+    {
+      moves = applyMove(now, inverter, command.publisher, one.target);
+    }
+    if (moves)
+    {
+      inverter.velocity_frames = 0;
+      waiting.inverters.push_back(inverter.index);
+    }
+  }
+  const bool queued = waiting.inverters.size() == 1 && scheduler_->velocityWaits(waiting.inverters.front());
+  if (queued && waiting.urgent)
+  {
+    scheduler_->makeUrgent(waiting.inverters.front());
+  }
+  if (!queued && !waiting.inverters.empty())
+  {
+    std::sort(waiting.inverters.begin(), waiting.inverters.end());
+    waiting.id = next_command_++;
+    waiting.not_before = now;
+    scheduler_->push(waiting);
+  }
+}
+
+/// Never refused; returns true if a frame is needed.
+bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)
+{
+  inverter.interlock.zeroed(now, publisher);
+  inverter.acceptCommand();
+  if (inverter.stop.pending())
+  {
+    return false;
+  }
+  if (!inverter.movement.runPossible())
+  {
+    inverter.movement.drop();
+    scheduler_->eraseVelocity(inverter.index);
+    inverter.interlock.resting();
+    return false;
+  }
+  inverter.movement.aim(target);
+  inverter.velocity_tries = 0;
+  return inverter.movement.active();
+}
+
+bool Coordinator::applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)
+{
+  inverter.interlock.commanded(now, publisher, true);
+  inverter.acceptCommand();
+  // Only the stop of a command of 0 can be pending here; the newer command takes its place.
+  inverter.stop.cancel();
+  inverter.movement.aim(target);
+  inverter.velocity_tries = 0;
+  return inverter.movement.active();
+}
+
+void Coordinator::refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id,
+                         const std::string& text, bool group)
+{
+  static_cast<void>(now);
+  for (const std::size_t index : indices)
+  {
+    inverters_[index]->refuseCommand(error_id, text);
+  }
+  if (group)
+  {
+    group_error_ = error_id;
+    log(Level::Warn, "grouped command refused: " + text);
+  }
+}
+
+// --- stop ------------------------------------------------------------------------------------------------------------
+
+void Coordinator::requestStop(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason)
+{
+  if (!reason.empty() && !inverter.interlock.stopPending())
+  {
+    log(Level::Warn, inverter.config.name + ": stopping: " + reason);
+  }
+  inverter.movement.drop();
+  inverter.movement.forgetWords();
+  scheduler_->eraseVelocity(inverter.index);
+  inverter.stop.request(now, mode);
+  if (!inverter.stop.pending())
+  {
+    return;
+  }
+  if (lock)
+  {
+    inverter.interlock.stopRequested();
+  }
+}
+
+void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback)
+{
+  StopCall call;
+  call.callback = std::move(callback);
+  call.expires = now + seconds(bounds().stop);
+  const StopMode wanted = mode <= static_cast<std::uint8_t>(StopMode::Quick) ? static_cast<StopMode>(mode) :
+                                                                               StopMode::Decelerate;
+  bool fell_back = mode > static_cast<std::uint8_t>(StopMode::Quick);
+  for (const auto& inverter : inverters_)
+  {
+    if (index && *index != inverter->index)
+    {
+      continue;
+    }
+    requestStop(now, *inverter, wanted, true, "");
+    fell_back = fell_back || (wanted != StopMode::Decelerate && inverter->stop.sequenceFor(wanted) == "stop");
+    if (inverter->stop.pending())
+    {
+      call.waiting.push_back(inverter->index);
+    }
+    else
+    {
+      call.error_id = ERROR_NOT_ARMED;
+      call.problems.push_back(inverter->config.name + ": its stop command is not confirmed in the profile");
+    }
+  }
+  if (fell_back)
+  {
+    call.note = "mode " + std::to_string(mode) + " is not offered here, carried out as DECELERATE";
+  }
+  if (!index && broadcastIsSafe())
+  {
+    broadcast_due_ = true;
+    broadcast_requested_ = now;
+  }
+  stop_calls_.push_back(std::move(call));
+  finishStopCalls(now);
+}
+
+/// Address 0 is executed by every drive, and the same register means something else on each brand.
+bool Coordinator::broadcastIsSafe() const
+{
+  const drive::Profile& first = inverters_.front()->drive.profile();
+  return connected_ && first.broadcast_stop && inverters_.size() > 1 &&
+         std::all_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
+           const drive::Profile& profile = inverter->drive.profile();
+           return profile.name == first.name && profile.broadcast_stop && inverter->drive.sequence("stop") != nullptr;
+         });
+}
+
+void Coordinator::finishStopCalls(TimePoint now)
+{
+  for (auto call = stop_calls_.begin(); call != stop_calls_.end();)
+  {
+    auto& waiting = call->waiting;
+    waiting.erase(std::remove_if(waiting.begin(), waiting.end(),
+                                 [&](std::size_t index) { return !inverters_[index]->stop.pending(); }),
+                  waiting.end());
+    if (!waiting.empty() && now < call->expires)
+    {
+      ++call;
+      continue;
+    }
+    for (const std::size_t index : waiting)
+    {
+      call->problems.push_back(stopProblem(*inverters_[index]));
+      const std::uint16_t error_id = inverters_[index]->stop.lastError();
+      call->error_id = error_id != 0 ? error_id : wire::ERROR_TIMEOUT;
+    }
+    Answer reply;
+    reply.success = call->problems.empty();
+    reply.error_id = reply.success ? ERROR_NONE : call->error_id;
+    reply.message = reply.success ? "stopped: RUN is confirmed off" : "not confirmed; the node goes on insisting";
+    for (const std::string& problem : call->problems)
+    {
+      reply.message += "; " + problem;
+    }
+    reply.message += call->note.empty() ? "" : "; " + call->note;
+    answer(call->callback, reply);
+    call = stop_calls_.erase(call);
+  }
+}
+
+std::string Coordinator::stopProblem(const Inverter& inverter) const
+{
+  const std::uint16_t error_id = inverter.stop.lastError();
+  const std::string& name = inverter.config.name;
+  if (!connected_)
+  {
+    return name + ": the port is gone";
+  }
+  if (error_id == 0)
+  {
+    return name + ": acknowledged, but RUN is still on";
+  }
+  return name + ": " + (error_id >= 0x8000 ? inverter.drive.exceptionText(error_id) : errorText(error_id));
+}
+
+void Coordinator::stopConfirmed(TimePoint now, Inverter& inverter)
+{
+  inverter.movement.stopped(now);
+  inverter.interlock.stopConfirmed(now);
+  inverter.interlock.resting();
+  finishStopCalls(now);
+}
+
+// --- services --------------------------------------------------------------------------------------------------------
+
+ServiceBounds Coordinator::bounds() const
+{
+  ServiceBounds bounds;
+  // Slow buses and long scan lists get more time; the README states how much.
+  const double exchange = toSeconds(longest_exchange_);
+  const double inverters = static_cast<double>(inverters_.size());
+  bounds.stop = std::max(bounds.stop, 3.0 * exchange * inverters);
+  bounds.reset = std::max(bounds.reset, 40.0 * exchange);
+  bounds.read_faults = std::max(bounds.read_faults, 80.0 * exchange);
+  bounds.read_parameter = std::max(bounds.read_parameter, 2.0 * exchange * (inverters + 2.0));
+  bounds.write_parameter = std::max(bounds.write_parameter, 20.0 * exchange);
+  return bounds;
+}
+
+void Coordinator::answer(const AnswerCallback& callback, const Answer& answer)
+{
+  if (callback)
+  {
+    answers_.emplace_back(callback, answer);
+  }
+}
+
+void Coordinator::refuseCall(const AnswerCallback& callback, std::uint16_t error_id, const std::string& message)
+{
+  Answer refused;
+  refused.error_id = error_id;
+  refused.message = message;
+  answer(callback, refused);
+}
+
+bool Coordinator::refuseJob(std::size_t index, const AnswerCallback& callback)
+{
+  const Inverter& inverter = *inverters_[index];
+  if (shutting_down_)
+  {
+    refuseCall(callback, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));
+    return true;
+  }
+  if (inverter.offline() || !inverter.known())
+  {
+    refuseCall(callback, ERROR_OFFLINE,
+               inverter.offline() ? errorText(ERROR_OFFLINE) : "the inverter has not answered yet");
+    return true;
+  }
+  return false;
+}
+
+void Coordinator::startJob(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound,
+                           AnswerCallback callback)
+{
+  const CommandId id = next_command_++;
+  RunningJob running;
+  running.job = std::move(job);
+  running.inverter = index;
+  running.expires = now + seconds(bound);
+  running.callback = std::move(callback);
+  jobs_.emplace(id, std::move(running));
+  queueJob(id, now);
+}
+
+void Coordinator::queueJob(CommandId id, TimePoint not_before)
+{
+  const RunningJob& running = jobs_.at(id);
+  WaitingCommand waiting;
+  waiting.id = id;
+  waiting.kind = running.job->kind();
+  waiting.inverters = { running.inverter };
+  waiting.not_before = not_before;
+  scheduler_->push(waiting);
+}
+
+void Coordinator::endJob(CommandId id, const Answer& result)
+{
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end())
+  {
+    return;
+  }
+  if (found->second.job->kind() == CommandKind::Reset)
+  {
+    inverters_[found->second.inverter]->reset_active = false;
+  }
+  answer(found->second.callback, result);
+  jobs_.erase(found);
+}
+
+void Coordinator::failJobs(std::size_t index, std::uint16_t error_id, const std::string& message)
+{
+  std::vector<CommandId> ids;
+  for (const auto& entry : jobs_)
+  {
+    if (entry.second.inverter == index)
+    {
+      ids.push_back(entry.first);
+    }
+  }
+  for (const CommandId id : ids)
+  {
+    Answer failed;
+    failed.error_id = error_id;
+    failed.message = message;
+    scheduler_->erase(id);
+    endJob(id, failed);
+  }
+}
+
+void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callback)
+{
+  Inverter& inverter = *inverters_[index];
+  if (!shutting_down_ && inverter.drive.sequence("reset") == nullptr)
+  {
+    const std::string missing = inverter.drive.missingFor("reset");
+    refuseCall(callback, missing.empty() ? ERROR_NOT_OFFERED : ERROR_NOT_ARMED,
+               missing.empty() ? "this drive has no fault reset" : "fault reset is not armed: confirm '" + missing + "'");
+    return;
+  }
+  if (refuseJob(index, callback))
+  {
+    return;
+  }
+  if (!inverter.interlock.isFaulted())
+  {
+    Answer nothing;
+    nothing.success = true;
+    nothing.message = "no trip: nothing was sent";
+    answer(callback, nothing);
+    return;
+  }
+  inverter.reset_active = true;
+  startJob(now, index, std::make_unique<ResetJob>(inverter.drive, inverter.config.node), bounds().reset,
+           std::move(callback));
+}
+
+void Coordinator::readFaults(TimePoint now, std::size_t index, AnswerCallback callback)
+{
+  Inverter& inverter = *inverters_[index];
+  if (!shutting_down_ && inverter.drive.faultEntries() == 0)
+  {
+    refuseCall(callback, ERROR_NOT_OFFERED, "this drive has no trip memory that can be read");
+    return;
+  }
+  if (refuseJob(index, callback))
+  {
+    return;
+  }
+  startJob(now, index,
+           std::make_unique<ReadFaultsJob>(inverter.drive, inverter.config.node, inverter.interlock.isFaulted()),
+           bounds().read_faults, std::move(callback));
+}
+
+void Coordinator::readParameter(TimePoint now, std::size_t index, const std::string& name, AnswerCallback callback)
+{
+  Inverter& inverter = *inverters_[index];
+  const auto parameter = inverter.drive.findParameter(name, false);
+  if (!shutting_down_ && !parameter)
+  {
+    const std::string missing = inverter.drive.missingForParameter(name);
+    refuseCall(callback, missing.empty() ? ERROR_OUT_OF_RANGE : ERROR_NOT_ARMED,
+               missing.empty() ? "'" + name + "' is no parameter of " + inverter.drive.profile().name +
+                                     "; use the drive's own code, or 0x and the number printed in its manual" :
+                                 "parameter '" + name + "' is unconfirmed: confirm '" + missing + "'");
+    return;
+  }
+  if (refuseJob(index, callback))
+  {
+    return;
+  }
+  startJob(now, index, std::make_unique<ReadParameterJob>(inverter.drive, inverter.config.node, *parameter),
+           bounds().read_parameter, std::move(callback));
+}
+
+/// The reasons that need no drive to refuse a write; 0: none.
+std::uint16_t Coordinator::judgeWrite(const Inverter& inverter, const std::string& name, double value, bool persist,
+                                      std::string& why, std::uint32_t& raw) const
+{
+  const drive::Profile& profile = inverter.drive.profile();
+  const auto known = profile.parameters.find(name);
+  const auto parameter = inverter.drive.findParameter(name, true);
+  if (known == profile.parameters.end())
+  {
+    why = "'" + name + "' is no parameter of " + profile.name + " that can be written";
+    return ERROR_OUT_OF_RANGE;
+  }
+  if (parameter)
+  {
+    const drive::Encoded encoded = inverter.drive.encodeParameter(*parameter, value);
+    raw = encoded.raw;
+    if (!encoded.ok)
+    {
+      why = encoded.error;
+      return ERROR_OUT_OF_RANGE;
+    }
+  }
+  if (configuration_.bus.parameters_read_only)
+  {
+    why = "parameter_access is read_only";
+  }
+  else if (known->second.read_only)
+  {
+    why = name + " can't be written";
+  }
+  else if (known->second.communication && !persist)
+  {
+    why = name + " is a setting of the bus itself: it is written with persist only";
+  }
+  else if (profile.writes_reach_eeprom && !persist)
+  {
+    why = "on this drive every write reaches the EEPROM: call with persist = true";
+  }
+  else if (persist && !profile.writes_reach_eeprom && inverter.drive.sequence("store") == nullptr)
+  {
+    why = "this drive can't store by a command";
+  }
+  else if (!known->second.while_running.value_or(true) &&
+           (inverter.movement.runPossible() || inverter.refresh.fresh().operation.value_or(false)))
+  {
+    why = name + " can't be written while the motor runs";
+  }
+  if (!why.empty())
+  {
+    return ERROR_NOT_OFFERED;
+  }
+  if (!parameter)
+  {
+    why = name + " is unconfirmed: confirm '" + inverter.drive.missingForParameter(name) + "'";
+    return ERROR_NOT_ARMED;
+  }
+  return 0;
+}
+
+void Coordinator::writeParameter(TimePoint now, std::size_t index, const std::string& name, double value, bool persist,
+                                 AnswerCallback callback)
+{
+  Inverter& inverter = *inverters_[index];
+  std::string why;
+  std::uint32_t raw = 0;
+  const std::uint16_t error_id = judgeWrite(inverter, name, value, persist, why, raw);
+  if (!shutting_down_ && error_id != 0)
+  {
+    refuseCall(callback, error_id, why);
+    return;
+  }
+  if (refuseJob(index, callback))
+  {
+    return;
+  }
+  startJob(now, index,
+           std::make_unique<WriteParameterJob>(inverter.drive, inverter.config.node,
+                                               *inverter.drive.findParameter(name, true), raw, persist,
+                                               inverter.ram_changes),
+           bounds().write_parameter, std::move(callback));
+}
+}  // namespace bus
+}  // namespace inverter_bus

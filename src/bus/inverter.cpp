@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/inverter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// Share of the drive's own time-out after which it is served whatever else waits.
+constexpr double TIMEOUT_SHARE = 0.8;
+// At reversal a drive may show "stopped" for a moment: only a longer one means that it lost its RUN.
+constexpr double OPERATION_LOST_S = 0.5;
+// Below this a drive may legitimately stand still with RUN on (start frequency).
+constexpr double LOWEST_JUDGED_HZ = 1.0;
+constexpr double MOVEMENT_PATIENCE_S = 3.0;
+constexpr double DEVIATION_PATIENCE_S = 2.0;
+
+std::string milliseconds(Duration duration)
+{
+  std::ostringstream text;
+  text.precision(3);
+  text << toSeconds(duration) * 1e3 << " ms";
+  return text.str();
+}
+
+std::string hex(std::uint16_t value)
+{
+  char text[8];
+  std::snprintf(text, sizeof text, "0x%04X", value);
+  return text;
+}
+
+bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, double patience)
+{
+  if (!condition)
+  {
+    since.reset();
+    return false;
+  }
+  if (!since)
+  {
+    since = now;
+  }
+  return now - *since >= seconds(patience);
+}
+}  // namespace
+
+Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after)
+  : index(index)
+  , config(config)
+  , drive(drive)
+  , interlock(config.command_timeout)
+  , movement(drive, config)
+  , stop(drive, config.node)
+  , refresh(drive, config.node)
+  , settings(drive, config.node)
+  , offline_after_(offline_after)
+{
+}
+
+// --- link ------------------------------------------------------------------------------------------------------------
+
+bool Inverter::answered(const wire::Reply& reply)
+{
+  const bool back = offline_ || !ever_answered_;
+  last_reply_ = reply.finished_at;
+  ever_answered_ = true;
+  failures_ = 0;
+  exchange_error_ = 0;
+  slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
+  probes = 0;
+  if (offline_)
+  {
+    offline_ = false;
+    ++returns_;
+  }
+  return back;
+}
+
+bool Inverter::failed(TimePoint now, std::uint16_t error_id)
+{
+  if (now < silence_until_)
+  {
+    return false;
+  }
+  exchange_error_ = error_id;
+  if (++failures_ < offline_after_ || offline_)
+  {
+    return false;
+  }
+  goOffline(error_id);
+  return true;
+}
+
+void Inverter::goOffline(std::uint16_t error_id)
+{
+  offline_ = true;
+  known_ = false;
+  leftover_judged_ = false;
+  exchange_error_ = error_id;
+  interlock.offline();
+  movement.drop();
+  movement.forgetWords();
+  refresh.forget();
+  settings.restart();
+  operation_seen_ = false;
+  operation_off_since_.reset();
+  unexpected_motion_ = false;
+  reset_active = false;
+}
+
+bool Inverter::offline() const
+{
+  return offline_;
+}
+
+bool Inverter::known() const
+{
+  return known_;
+}
+
+void Inverter::expectSilence(TimePoint until)
+{
+  silence_until_ = until;
+}
+
+wire::Request Inverter::prepared(wire::Request request) const
+{
+  request.response_timeout = seconds(config.response_timeout);
+  request.reply_delay = settings.replyDelay();
+  return request;
+}
+
+wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
+{
+  const auto loopback = drive.loopback(config.node, number);
+  wire::Request request = loopback ? *loopback :
+                                     drive.read(config.node, drive.runBlock() ? *drive.runBlock() :
+                                                                                drive.fastBlocks().front());
+  request = prepared(request);
+  request.response_timeout = std::min(request.response_timeout, response_timeout);
+  return request;
+}
+
+Duration Inverter::slowestReply() const
+{
+  return slowest_reply_;
+}
+
+void Inverter::lateReply(Duration delay)
+{
+  latest_late_reply_ = std::max(latest_late_reply_, delay);
+}
+
+// --- judgement -------------------------------------------------------------------------------------------------------
+
+Judgement Inverter::judge(TimePoint now)
+{
+  Judgement judgement;
+  const drive::Monitor& monitor = refresh.fresh();
+  known_ = true;
+  interlock.online(now);
+  const bool faulted = monitor.faulted.value_or(false);
+  judgement.tripped = faulted && !interlock.isFaulted();
+  interlock.faulted(faulted);
+  if (judgement.tripped)
+  {
+    const std::uint16_t code = monitor.fault_code.value_or(0);
+    judgement.stop_reason = "trip " + std::to_string(code) + ": " +
+                            (code == 0 ? std::string("no reason given") : drive.faultText(code));
+  }
+  judgeRun(monitor, judgement);
+  judgeOperation(now, monitor, judgement);
+  compareMovement(now, monitor);
+  leftover_judged_ = true;
+  return judgement;
+}
+
+void Inverter::judgeRun(const drive::Monitor& monitor, Judgement& judgement)
+{
+  // Words that were asked for before our last change of RUN say nothing about it.
+  const bool evidence = refresh.freshSentAt() >= movement.runChangedAt();
+  if (!monitor.run_seen || !evidence || stop.pending())
+  {
+    return;
+  }
+  const bool run_seen = *monitor.run_seen;
+  if (movement.runConfirmed() && !run_seen)
+  {
+    judgement.stop_reason = "the drive lost its RUN without a stop of ours (switched off and on, or reset)";
+  }
+  if (movement.zeroUnverified() && run_seen)
+  {
+    judgement.zero_failed = true;
+  }
+  if (movement.zeroUnverified() && !run_seen)
+  {
+    movement.stopped(refresh.freshSentAt());
+    interlock.resting();
+    return;
+  }
+  if (!run_seen || movement.runPossible())
+  {
+    return;
+  }
+  if (!leftover_judged_)
+  {
+    judgement.stop_reason = "a leftover RUN on the bus command is cleared";
+    return;
+  }
+  const bool new_motion = !unexpected_motion_;
+  unexpected_motion_ = true;
+  if (new_motion && config.stop_unexpected_motion)
+  {
+    judgement.stop_reason = "RUN is on without a command of this node";
+  }
+}
+
+void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Judgement& judgement)
+{
+  const std::optional<bool>& operation = monitor.operation ? monitor.operation : monitor.running;
+  if (!operation)
+  {
+    return;
+  }
+  if (!movement.runPossible())
+  {
+    operation_seen_ = false;
+    operation_off_since_.reset();
+    if (!*operation)
+    {
+      at_rest_seen_ = true;
+      unexpected_motion_ = unexpected_motion_ && monitor.run_seen.value_or(false);
+    }
+    // A motor that runs out after our stop is no surprise; one that starts from rest is.
+    const bool surprising = *operation && (at_rest_seen_ || !leftover_judged_) && !monitor.run_seen.value_or(false);
+    if (surprising && !unexpected_motion_)
+    {
+      unexpected_motion_ = true;
+      if (config.stop_unexpected_motion && !stop.pending())
+      {
+        judgement.stop_reason = "the motor runs without a command of this node";
+      }
+    }
+    return;
+  }
+  at_rest_seen_ = false;
+  unexpected_motion_ = false;
+  operation_seen_ = operation_seen_ || *operation;
+  const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
+  const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
+                    refresh.freshSentAt() >= movement.runChangedAt();
+  if (lasts(operation_off_since_, lost, now, OPERATION_LOST_S))
+  {
+    judgement.stop_reason = "the drive stopped without a stop of ours (STOP key, terminal or safe stop)";
+    operation_seen_ = false;
+  }
+}
+
+void Inverter::compareMovement(TimePoint now, const drive::Monitor& monitor)
+{
+  const bool commanded = movement.runConfirmed() && movement.target() && !movement.target()->zero;
+  const double frequency = monitor.output_frequency.value_or(0.0);
+  const double target = commanded ? movement.target()->counts * drive.frequencyResolution() : 0.0;
+  const bool still = commanded && monitor.output_frequency && frequency <= 0.0 && target >= LOWEST_JUDGED_HZ;
+  lasts(idle_since_, still, now, MOVEMENT_PATIENCE_S);
+  const int sense = commanded && movement.target()->reverse ? -1 : 1;
+  const bool wrong = commanded && monitor.direction && *monitor.direction == -sense && frequency >= last_frequency_;
+  lasts(wrong_direction_since_, wrong, now, MOVEMENT_PATIENCE_S);
+  const bool deviates = commanded && monitor.at_speed.value_or(false) && monitor.output_frequency && frequency > 0.0 &&
+                        std::fabs(frequency - target) > std::max(0.5, 0.02 * target);
+  lasts(deviates_since_, deviates, now, DEVIATION_PATIENCE_S);
+  last_frequency_ = frequency;
+}
+
+// --- status ----------------------------------------------------------------------------------------------------------
+
+InverterStatus Inverter::status(TimePoint now) const
+{
+  InverterStatus status;
+  status.index = index;
+  status.stamp = refresh.stamp();
+  status.has_stamp = refresh.hasStamp();
+  status.communication_error = offline_;
+  if (!offline_)
+  {
+    status.monitor = refresh.monitor(now);
+  }
+  status.run_command = movement.runCommand();
+  status.move_velocity_active = movement.active();
+  status.reset_active = reset_active;
+  status.stop_active = stop.pending();
+  status.locked = interlock.locked(now);
+  status.error_id = command_error_ != 0 ? command_error_ : exchange_error_;
+  if (status.error_id != 0)
+  {
+    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_);
+  }
+  const auto& target = movement.target();
+  status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
+  return status;
+}
+
+void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
+{
+  command_error_ = error_id;
+  command_error_text_ = text;
+}
+
+void Inverter::acceptCommand()
+{
+  command_error_ = 0;
+  command_error_text_.clear();
+}
+
+void Inverter::noteExchangeError(std::uint16_t error_id)
+{
+  exchange_error_ = error_id;
+}
+
+std::vector<Finding> Inverter::errors() const
+{
+  std::vector<Finding> findings;
+  if (offline_)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
+                                           "); check supply, wiring, station number and serial settings" });
+    return findings;
+  }
+  if (interlock.isFaulted())
+  {
+    const std::uint16_t code = refresh.fresh().fault_code.value_or(0);
+    findings.push_back({ Level::Error, "tripped: " + std::to_string(code) + " " + drive.faultText(code) +
+                                           "; remove the cause, then call reset" });
+  }
+  return findings;
+}
+
+std::vector<Finding> Inverter::findings(TimePoint now) const
+{
+  std::vector<Finding> findings = errors();
+  const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
+  if (!offline_ && !known_)
+  {
+    warn("has not answered yet");
+  }
+  for (const Finding& finding : settings.findings())
+  {
+    findings.push_back(finding);
+  }
+  if (unexpected_motion_)
+  {
+    warn("runs without a command of this node; look for a second master, the panel or terminals");
+  }
+  if (idle_since_ && now - *idle_since_ >= seconds(MOVEMENT_PATIENCE_S))
+  {
+    warn("does not move although RUN is on; check the enable inputs and who may command the drive");
+  }
+  if (wrong_direction_since_ && now - *wrong_direction_since_ >= seconds(MOVEMENT_PATIENCE_S))
+  {
+    warn("turns in the wrong direction; check the drive's direction settings and hz_per_unit");
+  }
+  if (deviates_since_ && now - *deviates_since_ >= seconds(DEVIATION_PATIENCE_S))
+  {
+    warn("runs at another speed than commanded; check for a takeover at the panel and the drive's frequency limits");
+  }
+  if (interlock.activePublishers(now) > 1)
+  {
+    warn("several publishers command this inverter");
+  }
+  if (latest_late_reply_ > Duration::zero())
+  {
+    warn("a reply came " + milliseconds(latest_late_reply_) + " after its request; a response_timeout above that "
+         "would have caught it");
+  }
+  if (!drive.profile().unconfirmed.empty())
+  {
+    std::string names;
+    for (const std::string& name : drive.profile().unconfirmed)
+    {
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    warn("unconfirmed in the profile: " + names + "; check them on the drive, then list them under confirm");
+  }
+  return findings;
+}
+
+std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now) const
+{
+  std::vector<std::pair<std::string, std::string>> values;
+  values.emplace_back("node", std::to_string(config.node));
+  values.emplace_back("drive", drive.profile().name);
+  values.emplace_back("model", drive.profile().title);
+  values.emplace_back("age of status",
+                      refresh.hasStamp() ? milliseconds(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", milliseconds(slowest_reply_));
+  values.emplace_back("returns", std::to_string(returns_));
+  values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
+  values.emplace_back("own reply delay", milliseconds(settings.replyDelay()));
+  for (const auto& value : settings.values())
+  {
+    values.push_back(value);
+  }
+  return values;
+}
+
+InverterView Inverter::view(TimePoint now, Duration longest_exchange) const
+{
+  InverterView view;
+  const drive::Monitor& monitor = refresh.fresh();
+  view.offline = offline_;
+  view.at_rest = known_ && !movement.runPossible() && !movement.target() && !monitor.operation.value_or(false) &&
+                 !monitor.running.value_or(false) && !monitor.faulted.value_or(false);
+  view.stop_pending = stop.pending();
+  view.stop_attempts = stop.pending() ? stop.attempts() : 0;
+  view.stop_written = stop.pending() && stop.written();
+  view.refresh_not_before = refresh_not_before;
+  view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now;
+  const auto timeout = settings.driveTimeout();
+  if (timeout && ever_answered_)
+  {
+    const Duration latest = seconds(toSeconds(*timeout) * TIMEOUT_SHARE) - longest_exchange;
+    view.serve_by = last_reply_ + std::max(latest, Duration::zero());
+  }
+  return view;
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/jobs.h"
+
+#include <algorithm>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+constexpr double VERIFY_PERIOD_S = 0.1;
+constexpr double BUSY_PERIOD_S = 0.05;
+}  // namespace
+
+Job::Job(const drive::Drive& drive, std::uint8_t station, CommandKind kind)
+  : drive_(drive), station_(station), kind_(kind)
+{
+}
+
+CommandKind Job::kind() const
+{
+  return kind_;
+}
+
+Duration Job::pause() const
+{
+  return pause_;
+}
+
+Answer& Job::answer()
+{
+  return answer_;
+}
+
+Job::Progress Job::fail(std::uint16_t error_id, const std::string& message)
+{
+  answer_.success = false;
+  answer_.error_id = error_id;
+  answer_.message = message;
+  return Progress::Done;
+}
+
+Job::Progress Job::succeed(const std::string& message)
+{
+  answer_.success = true;
+  answer_.error_id = ERROR_NONE;
+  answer_.message = message;
+  return Progress::Done;
+}
+
+Job::Progress Job::refusedByDrive(const wire::Reply& reply, const std::string& what)
+{
+  return fail(reply.error_id, what + ": " + drive_.exceptionText(reply.error_id));
+}
+
+Job::Progress Job::lost(const wire::Reply& reply)
+{
+  return fail(reply.error_id, errorText(reply.error_id));
+}
+
+// --- reset -----------------------------------------------------------------------------------------------------------
+
+ResetJob::ResetJob(const drive::Drive& drive, std::uint8_t station)
+  : Job(drive, station, CommandKind::Reset), phase_(drive.runBlock() ? Phase::CheckRun : Phase::Steps)
+{
+}
+
+const drive::ReadBlock& ResetJob::verifyBlock() const
+{
+  const auto& blocks = drive_.fastBlocks();
+  const auto found = std::find_if(blocks.begin(), blocks.end(), [](const drive::ReadBlock& block) {
+    return std::find(block.fields.begin(), block.fields.end(), "faulted") != block.fields.end();
+  });
+  return found == blocks.end() ? blocks.front() : *found;
+}
+
+wire::Request ResetJob::next()
+{
+  pause_ = Duration{ 0 };
+  if (phase_ == Phase::CheckRun)
+  {
+    return drive_.read(station_, *drive_.runBlock());
+  }
+  if (phase_ == Phase::Verify)
+  {
+    return drive_.read(station_, verifyBlock());
+  }
+  const drive::Step& step = drive_.sequence("reset")->steps[step_];
+  return drive_.write(station_, step.point, step.value.value_or(0));
+}
+
+Job::Progress ResetJob::done(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Exception)
+  {
+    return refusedByDrive(reply, "the drive refused the reset");
+  }
+  drive::Monitor monitor;
+  switch (phase_)
+  {
+    case Phase::CheckRun:
+      drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
+      if (monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(false))
+      {
+        if (run_was_on_)
+        {
+          return fail(ERROR_CANCELLED, "RUN is still on after a stop: nothing was reset, since the motor would start");
+        }
+        run_was_on_ = true;
+        return Progress::NeedsStop;
+      }
+      phase_ = Phase::Steps;
+      return Progress::GoesOn;
+    case Phase::Steps:
+    {
+      const auto& steps = drive_.sequence("reset")->steps;
+      pause_ = seconds(steps[step_].pause);
+      if (++step_ >= steps.size())
+      {
+        phase_ = Phase::Verify;
+      }
+      return Progress::GoesOn;
+    }
+    default:
+      drive_.decode(verifyBlock(), reply.pdu, monitor);
+      if (!monitor.faulted)
+      {
+        return succeed("reset sent; this drive can't tell whether the trip is gone");
+      }
+      if (*monitor.faulted)
+      {
+        // Some causes (overheat, a safe stop that is still open) keep the trip: the bound ends the waiting.
+        answer().error_id = wire::ERROR_TIMEOUT;
+        answer().message = "the drive is still tripped after the reset: remove the cause first";
+        pause_ = seconds(VERIFY_PERIOD_S);
+        return Progress::GoesOn;
+      }
+      return succeed("trip cleared");
+  }
+}
+
+Job::Progress ResetJob::lost(const wire::Reply& reply)
+{
+  if (!resetting())
+  {
+    return Job::lost(reply);
+  }
+  // A drive that restarts after a reset is deaf for a while; leaving the reset coil on would hold it in reset.
+  answer().error_id = reply.error_id;
+  answer().message = "the drive did not answer after the reset";
+  pause_ = seconds(VERIFY_PERIOD_S);
+  return Progress::GoesOn;
+}
+
+bool ResetJob::resetting() const
+{
+  return phase_ == Phase::Verify || (phase_ == Phase::Steps && step_ > 0);
+}
+
+// --- faults ----------------------------------------------------------------------------------------------------------
+
+ReadFaultsJob::ReadFaultsJob(const drive::Drive& drive, std::uint8_t station, bool faulted)
+  : Job(drive, station, CommandKind::ReadFaults), faulted_(faulted), reads_(drive.faultReads(0))
+{
+}
+
+wire::Request ReadFaultsJob::next()
+{
+  return drive_.read(station_, reads_[read_]);
+}
+
+Job::Progress ReadFaultsJob::done(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Exception)
+  {
+    return refusedByDrive(reply, "reading the trip memory");
+  }
+  drive_.decodeFault(entry_, reads_[read_], reply.pdu, record_);
+  if (++read_ < reads_.size())
+  {
+    return Progress::GoesOn;
+  }
+  if (record_.code != 0)
+  {
+    answer().faults.push_back(record_);
+  }
+  record_ = drive::FaultRecord();
+  read_ = 0;
+  if (++entry_ >= drive_.faultEntries())
+  {
+    return finish();
+  }
+  reads_ = drive_.faultReads(entry_);
+  return Progress::GoesOn;
+}
+
+Job::Progress ReadFaultsJob::finish()
+{
+  if (faulted_ && !answer().faults.empty())
+  {
+    answer().present = answer().faults.front();
+  }
+  const std::size_t count = answer().faults.size();
+  return succeed(count == 0 ? "the trip memory is empty" : std::to_string(count) + " trips, newest first");
+}
+
+// --- parameters ------------------------------------------------------------------------------------------------------
+
+ReadParameterJob::ReadParameterJob(const drive::Drive& drive, std::uint8_t station, const drive::Parameter& parameter)
+  : Job(drive, station, CommandKind::ReadParameter), parameter_(parameter)
+{
+}
+
+wire::Request ReadParameterJob::next()
+{
+  return drive_.readParameter(station_, parameter_);
+}
+
+Job::Progress ReadParameterJob::done(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Exception)
+  {
+    return refusedByDrive(reply, "reading " + parameter_.name);
+  }
+  answer().value = drive_.decodeParameter(parameter_, reply.pdu);
+  answer().unit = parameter_.item.unit;
+  return succeed(parameter_.title.empty() ? parameter_.name : parameter_.name + ": " + parameter_.title);
+}
+
+WriteParameterJob::WriteParameterJob(const drive::Drive& drive, std::uint8_t station, const drive::Parameter& parameter,
+                                     std::uint32_t raw, bool persist, std::set<std::string>& ram_changes)
+  : Job(drive, station, CommandKind::WriteParameter)
+  , parameter_(parameter)
+  , raw_(raw)
+  , persist_(persist)
+  , ram_changes_(ram_changes)
+{
+}
+
+const drive::Parameter& WriteParameterJob::parameter() const
+{
+  return parameter_;
+}
+
+wire::Request WriteParameterJob::next()
+{
+  pause_ = Duration{ 0 };
+  if (phase_ == Phase::Write)
+  {
+    return drive_.writeParameter(station_, parameter_, raw_);
+  }
+  if (phase_ == Phase::Busy)
+  {
+    return *drive_.readStoreBusy(station_);
+  }
+  const drive::Step& step = drive_.sequence("store")->steps[step_];
+  return drive_.write(station_, step.point, step.value.value_or(0));
+}
+
+Job::Progress WriteParameterJob::done(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Exception)
+  {
+    return refusedByDrive(reply, phase_ == Phase::Write ? "writing " + parameter_.name :
+                                                          parameter_.name + " is written to RAM but not stored");
+  }
+  if (phase_ == Phase::Write)
+  {
+    if (drive_.profile().writes_reach_eeprom)
+    {
+      return succeed(parameter_.name + " written to the EEPROM");
+    }
+    ram_changes_.insert(parameter_.name);
+    if (!persist_)
+    {
+      return succeed(parameter_.name + " written to RAM; lost at power-off unless it is stored with persist");
+    }
+    phase_ = Phase::Store;
+    return Progress::GoesOn;
+  }
+  if (phase_ == Phase::Store)
+  {
+    if (++step_ < drive_.sequence("store")->steps.size())
+    {
+      return Progress::GoesOn;
+    }
+    phase_ = Phase::Busy;
+    pause_ = seconds(BUSY_PERIOD_S);
+    return drive_.readStoreBusy(station_) ? Progress::GoesOn : stored();
+  }
+  if (drive_.decodeStoreBusy(reply.pdu))
+  {
+    pause_ = seconds(BUSY_PERIOD_S);
+    return Progress::GoesOn;
+  }
+  return stored();
+}
+
+Job::Progress WriteParameterJob::stored()
+{
+  std::string names;
+  for (const std::string& name : ram_changes_)
+  {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  ram_changes_.clear();
+  return succeed("stored in the EEPROM with every other RAM change of this drive; made here: " + names);
+}
+}  // namespace bus
+}  // namespace inverter_bus

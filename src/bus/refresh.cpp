@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/refresh.h"
+
+#include <algorithm>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+constexpr double OLDEST_SLOW_VALUE_S = 1.0;
+// A slow value is read again when it would grow too old before the next refresh but one.
+constexpr double SLOW_MARGIN_S = 0.1;
+// A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
+constexpr double LEFT_OUT_S = 30.0;
+
+template <typename T>
+void take(const std::optional<T>& from, std::optional<T>& to)
+{
+  if (from)
+  {
+    to = from;
+  }
+}
+
+unsigned lastAddress(const drive::Item& item)
+{
+  return item.address + item.size - 1U;
+}
+}  // namespace
+
+void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
+{
+  take(from.run_seen, to.run_seen);
+  take(from.operation, to.operation);
+  take(from.running, to.running);
+  take(from.direction, to.direction);
+  take(from.ready, to.ready);
+  take(from.at_speed, to.at_speed);
+  take(from.at_set_frequency, to.at_set_frequency);
+  take(from.overload_warning, to.overload_warning);
+  take(from.pid_deviation, to.pid_deviation);
+  take(from.faulted, to.faulted);
+  take(from.raw_status, to.raw_status);
+  take(from.fault_code, to.fault_code);
+  take(from.warning_code, to.warning_code);
+  take(from.output_frequency, to.output_frequency);
+  take(from.output_current, to.output_current);
+  take(from.output_voltage, to.output_voltage);
+  take(from.dc_voltage, to.dc_voltage);
+  take(from.torque, to.torque);
+  take(from.temperature, to.temperature);
+}
+
+std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive::ReadBlock& block)
+{
+  std::vector<std::string> fields = block.fields;
+  const auto& items = drive.profile().status;
+  // A packed word (raw_status) that spans the others can't be split; it is left out.
+  fields.erase(std::remove_if(fields.begin(), fields.end(),
+                              [&](const std::string& field) {
+                                return fields.size() > 1 && items.at(field).size == block.count && block.count > 2;
+                              }),
+               fields.end());
+  std::sort(fields.begin(), fields.end(), [&](const std::string& left, const std::string& right) {
+    return items.at(left).address < items.at(right).address;
+  });
+  std::size_t cut = 0;
+  unsigned widest = 0;
+  for (std::size_t index = 1; index < fields.size(); ++index)
+  {
+    const unsigned gap = items.at(fields[index]).address - lastAddress(items.at(fields[index - 1]));
+    if (gap > widest)
+    {
+      widest = gap;
+      cut = index;
+    }
+  }
+  if (cut == 0)
+  {
+    return { block };
+  }
+  std::vector<drive::ReadBlock> halves(2);
+  for (std::size_t index = 0; index < fields.size(); ++index)
+  {
+    halves[index < cut ? 0 : 1].fields.push_back(fields[index]);
+  }
+  for (drive::ReadBlock& half : halves)
+  {
+    const drive::Item& first = items.at(half.fields.front());
+    unsigned last = 0;
+    for (const std::string& field : half.fields)
+    {
+      last = std::max(last, lastAddress(items.at(field)));
+    }
+    half.space = block.space;
+    half.number = first.number;
+    half.address = first.address;
+    half.count = last - first.address + 1;
+  }
+  return halves;
+}
+
+Refresh::Refresh(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
+{
+  const auto add = [&](const std::vector<drive::ReadBlock>& reads, Class kind) {
+    for (const drive::ReadBlock& read : reads)
+    {
+      Block block;
+      block.read = read;
+      block.kind = kind;
+      blocks_.push_back(block);
+    }
+  };
+  add(drive.slowBlocks(), Class::Slow);
+  add(drive.faultBlocks(), Class::Fault);
+  // Last, so that the stamp belongs to the values that matter.
+  add(drive.fastBlocks(), Class::Fast);
+}
+
+void Refresh::plan(TimePoint now, Duration cycle_time)
+{
+  plan_.clear();
+  position_ = 0;
+  fault_planned_ = false;
+  scratch_ = drive::Monitor();
+  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S) - 2 * cycle_time;
+  bool slow_planned = false;
+  for (std::size_t step = 0; step < blocks_.size() && has_stamp_; ++step)
+  {
+    const std::size_t index = (slow_cursor_ + step) % blocks_.size();
+    Block& block = blocks_[index];
+    const bool due = !block.ever || now - block.last >= due_age;
+    if (block.kind == Class::Slow && !slow_planned && due && now >= block.left_out_until)
+    {
+      plan_.push_back(index);
+      slow_planned = true;
+      slow_cursor_ = index + 1;
+    }
+  }
+  for (std::size_t index = 0; index < blocks_.size(); ++index)
+  {
+    const Block& block = blocks_[index];
+    if (block.kind == Class::Fast && now >= block.left_out_until)
+    {
+      plan_.push_back(index);
+    }
+  }
+  if (plan_.empty())
+  {
+    // Everything is refused: keep asking for something, so that the inverter's return to health is seen.
+    plan_.push_back(blocks_.size() - 1);
+  }
+}
+
+const drive::ReadBlock& Refresh::next(TimePoint now, Duration cycle_time)
+{
+  if (position_ >= plan_.size())
+  {
+    plan(now, cycle_time);
+  }
+  return blocks_[plan_[position_]].read;
+}
+
+void Refresh::planFaultReads()
+{
+  fault_planned_ = true;
+  for (std::size_t index = 0; index < blocks_.size(); ++index)
+  {
+    if (blocks_[index].kind == Class::Fault && scratch_time_ >= blocks_[index].left_out_until)
+    {
+      plan_.push_back(index);
+    }
+  }
+}
+
+bool Refresh::advance()
+{
+  ++position_;
+  if (position_ == plan_.size() && scratch_.faulted.value_or(false) && !fault_planned_)
+  {
+    // The reason of a trip belongs into the first status that shows it.
+    planFaultReads();
+  }
+  if (position_ < plan_.size())
+  {
+    return true;
+  }
+  if (!scratch_.faulted.value_or(true) && drive_.reports("fault_code"))
+  {
+    scratch_.fault_code = 0;
+  }
+  plan_.clear();
+  position_ = 0;
+  fresh_ = scratch_;
+  fresh_sent_at_ = scratch_sent_at_;
+  complete_ = true;
+  return false;
+}
+
+bool Refresh::received(const wire::Reply& reply)
+{
+  scratch_time_ = reply.finished_at;
+  Block& block = blocks_[plan_[position_]];
+  block.values = drive::Monitor();
+  drive_.decode(block.read, reply.pdu, block.values);
+  block.last = reply.finished_at;
+  block.ever = true;
+  if (block.kind != Class::Slow)
+  {
+    mergeMonitor(block.values, scratch_);
+  }
+  if (block.kind == Class::Fast)
+  {
+    const bool carries_run = block.values.run_seen || block.values.operation || block.values.running;
+    if (carries_run)
+    {
+      scratch_sent_at_ = reply.sent_at;
+    }
+    stamp_ = reply.finished_at;
+    has_stamp_ = true;
+  }
+  return advance();
+}
+
+bool Refresh::refused(const wire::Reply& reply)
+{
+  const std::size_t index = plan_[position_];
+  const std::vector<drive::ReadBlock> halves = splitBlock(drive_, blocks_[index].read);
+  if (halves.size() < 2)
+  {
+    blocks_[index].left_out_until = reply.finished_at + seconds(LEFT_OUT_S);
+    blocks_[index].values = drive::Monitor();
+    return advance();
+  }
+  Block second = blocks_[index];
+  second.read = halves[1];
+  blocks_[index].read = halves[0];
+  blocks_.insert(blocks_.begin() + static_cast<std::ptrdiff_t>(index) + 1, second);
+  // The plan's indices moved: this refresh starts again with the smaller reads.
+  plan_.clear();
+  position_ = 0;
+  return true;
+}
+
+void Refresh::failed()
+{
+  plan_.clear();
+  position_ = 0;
+}
+
+bool Refresh::takeComplete()
+{
+  const bool complete = complete_;
+  complete_ = false;
+  return complete;
+}
+
+drive::Monitor Refresh::monitor(TimePoint now) const
+{
+  drive::Monitor monitor = fresh_;
+  for (const Block& block : blocks_)
+  {
+    if (block.kind == Class::Slow && block.ever && now - block.last <= seconds(OLDEST_SLOW_VALUE_S))
+    {
+      mergeMonitor(block.values, monitor);
+    }
+  }
+  return monitor;
+}
+
+const drive::Monitor& Refresh::fresh() const
+{
+  return fresh_;
+}
+
+TimePoint Refresh::freshSentAt() const
+{
+  return fresh_sent_at_;
+}
+
+TimePoint Refresh::stamp() const
+{
+  return stamp_;
+}
+
+bool Refresh::hasStamp() const
+{
+  return has_stamp_;
+}
+
+void Refresh::forget()
+{
+  failed();
+  fresh_ = drive::Monitor();
+  complete_ = false;
+  for (Block& block : blocks_)
+  {
+    block.ever = false;
+    block.values = drive::Monitor();
+  }
+}
+
+std::vector<drive::ReadBlock> Refresh::fastBlocks() const
+{
+  std::vector<drive::ReadBlock> reads;
+  for (const Block& block : blocks_)
+  {
+    if (block.kind == Class::Fast)
+    {
+      reads.push_back(block.read);
+    }
+  }
+  return reads;
+}
+
+std::vector<drive::ReadBlock> Refresh::slowBlocks() const
+{
+  std::vector<drive::ReadBlock> reads;
+  for (const Block& block : blocks_)
+  {
+    if (block.kind == Class::Slow)
+    {
+      reads.push_back(block.read);
+    }
+  }
+  return reads;
+}
+}  // namespace bus
+}  // namespace inverter_bus

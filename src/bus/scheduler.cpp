@@ -1,0 +1,510 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/scheduler.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// Contract, rule 3.3: three attempts at once, then every second exchange at most.
+constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
+constexpr std::uint64_t INSISTING_SPACING = 2;
+// Rule 3.14: the lowest class gets at least every eighth exchange.
+constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
+// A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.
+constexpr unsigned LONE_COMMANDS_IN_A_ROW = 3;
+constexpr double LONGEST_SLEEP_S = 0.25;
+}  // namespace
+
+Scheduler::Scheduler(const Settings& settings)
+  : settings_(settings), stop_pending_(settings.inverters, false), last_stop_exchange_(settings.inverters, 0)
+{
+}
+
+// --- commands --------------------------------------------------------------------------------------------------------
+
+std::deque<Scheduler::Ticket>::iterator Scheduler::find(CommandId id)
+{
+  return std::find_if(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) { return ticket.command.id == id; });
+}
+
+void Scheduler::push(const WaitingCommand& command)
+{
+  Ticket ticket{ command, epoch_, ++sequence_ };
+  if (command.kind == CommandKind::Velocity)
+  {
+    for (const std::size_t inverter : command.inverters)
+    {
+      for (const Ticket& other : tickets_)
+      {
+        const auto& members = other.command.inverters;
+        if (other.command.kind == CommandKind::Velocity && other.command.id != unit_ &&
+            std::find(members.begin(), members.end(), inverter) != members.end())
+        {
+          ticket.epoch = std::min(ticket.epoch, other.epoch);
+          ticket.sequence = std::min(ticket.sequence, other.sequence);
+        }
+      }
+      eraseVelocity(inverter);
+    }
+  }
+  tickets_.push_back(ticket);
+}
+
+void Scheduler::erase(CommandId id)
+{
+  const auto found = find(id);
+  if (found != tickets_.end())
+  {
+    tickets_.erase(found);
+  }
+  endUnit(id);
+}
+
+void Scheduler::eraseVelocity(std::size_t inverter)
+{
+  for (auto ticket = tickets_.begin(); ticket != tickets_.end();)
+  {
+    auto& members = ticket->command.inverters;
+    if (ticket->command.kind == CommandKind::Velocity)
+    {
+      members.erase(std::remove(members.begin(), members.end(), inverter), members.end());
+    }
+    if (members.empty())
+    {
+      endUnit(ticket->command.id);
+      ticket = tickets_.erase(ticket);
+    }
+    else
+    {
+      ++ticket;
+    }
+  }
+}
+
+void Scheduler::makeUrgent(std::size_t inverter)
+{
+  for (Ticket& ticket : tickets_)
+  {
+    const auto& members = ticket.command.inverters;
+    if (ticket.command.kind == CommandKind::Velocity &&
+        std::find(members.begin(), members.end(), inverter) != members.end())
+    {
+      ticket.command.urgent = true;
+    }
+  }
+}
+
+void Scheduler::postpone(CommandId id, TimePoint not_before)
+{
+  const auto found = find(id);
+  if (found != tickets_.end())
+  {
+    found->command.not_before = not_before;
+  }
+}
+
+bool Scheduler::velocityWaits(std::size_t inverter) const
+{
+  return std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
+    const auto& members = ticket.command.inverters;
+    return ticket.command.kind == CommandKind::Velocity &&
+           std::find(members.begin(), members.end(), inverter) != members.end();
+  });
+}
+
+std::vector<std::size_t> Scheduler::members(CommandId id) const
+{
+  const auto found = std::find_if(tickets_.begin(), tickets_.end(),
+                                  [&](const Ticket& ticket) { return ticket.command.id == id; });
+  return found == tickets_.end() ? std::vector<std::size_t>() : found->command.inverters;
+}
+
+void Scheduler::endUnit(CommandId id)
+{
+  if (unit_ == id)
+  {
+    unit_ = 0;
+  }
+}
+
+std::size_t Scheduler::readyCommands(TimePoint now) const
+{
+  return static_cast<std::size_t>(std::count_if(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
+    return ready(ticket, now);
+  }));
+}
+
+bool Scheduler::ready(const Ticket& ticket, TimePoint now) const
+{
+  const bool behind_stop = ticket.command.kind != CommandKind::Velocity &&
+                           stop_pending_[ticket.command.inverters.front()];
+  return ticket.command.not_before <= now && !behind_stop;
+}
+
+const Scheduler::Ticket* Scheduler::firstReady(TimePoint now, bool urgent_only) const
+{
+  const auto key = [](const Ticket& ticket) {
+    return std::make_tuple(!ticket.command.urgent, ticket.epoch, ticket.command.kind, ticket.command.inverters.front(),
+                           ticket.sequence);
+  };
+  const Ticket* first = nullptr;
+  for (const Ticket& ticket : tickets_)
+  {
+    const bool eligible = ready(ticket, now) && (ticket.command.urgent || !urgent_only);
+    if (eligible && (first == nullptr || key(ticket) < key(*first)))
+    {
+      first = &ticket;
+    }
+  }
+  return first;
+}
+
+// --- decisions -------------------------------------------------------------------------------------------------------
+
+Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
+{
+  for (std::size_t index = 0; index < views.size(); ++index)
+  {
+    stop_pending_[index] = views[index].stop_pending;
+  }
+  Pick pick = choose(now, views);
+  if (pick.what == Pick::What::Nothing)
+  {
+    return pick;
+  }
+  ++epoch_;
+  if (pick.what == Pick::What::Stop)
+  {
+    bookStop(pick, views);
+  }
+  return pick;
+}
+
+Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
+{
+  if (auto stop = pickStop(views))
+  {
+    return *stop;
+  }
+  if (auto urgent = pickCommand(now, true))
+  {
+    return *urgent;
+  }
+  const auto unit = find(unit_);
+  if (unit != tickets_.end() && unit->command.not_before <= now)
+  {
+    Pick pick;
+    pick.what = Pick::What::Command;
+    pick.command = unit_;
+    return pick;
+  }
+  if (auto deadline = pickDeadline(now, views))
+  {
+    return *deadline;
+  }
+  const auto background = pickBackground(views);
+  if (background && exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND)
+  {
+    return *background;
+  }
+  if (auto command = pickCommand(now, false))
+  {
+    const bool give_way = commands_in_a_row_ > 0 &&
+                          (readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
+    if (give_way)
+    {
+      if (auto refresh = pickRefresh(now, views))
+      {
+        return *refresh;
+      }
+    }
+    return *command;
+  }
+  if (auto probe = pickProbe(now, views))
+  {
+    return *probe;
+  }
+  if (auto refresh = pickRefresh(now, views))
+  {
+    return *refresh;
+  }
+  return background ? *background : nothing(now, views);
+}
+
+std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views) const
+{
+  using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
+  std::optional<Key> best;
+  for (std::size_t index = 0; index < views.size(); ++index)
+  {
+    const InverterView& view = views[index];
+    // An offline inverter's stop is tried once at once; then it is that inverter's probe.
+    const bool at_once = view.offline ? view.stop_attempts == 0 : view.stop_attempts < STOP_ATTEMPTS_AT_ONCE;
+    const bool insisting = !view.offline && exchanges_ - last_insisting_exchange_ >= INSISTING_SPACING;
+    if (!view.stop_pending || !(at_once || insisting))
+    {
+      continue;
+    }
+    const Key key(view.offline, view.stop_attempts, view.stop_written, last_stop_exchange_[index], index);
+    if (!best || key < *best)
+    {
+      best = key;
+    }
+  }
+  if (!best)
+  {
+    return std::nullopt;
+  }
+  Pick pick;
+  pick.what = Pick::What::Stop;
+  pick.inverter = std::get<4>(*best);
+  pick.probe = std::get<0>(*best);
+  return pick;
+}
+
+void Scheduler::bookStop(const Pick& pick, const std::vector<InverterView>& views)
+{
+  last_stop_exchange_[pick.inverter] = exchanges_ + 1;
+  if (views[pick.inverter].stop_attempts >= STOP_ATTEMPTS_AT_ONCE)
+  {
+    last_insisting_exchange_ = exchanges_ + 1;
+  }
+}
+
+std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) const
+{
+  const Ticket* ticket = firstReady(now, urgent_only);
+  if (ticket == nullptr)
+  {
+    return std::nullopt;
+  }
+  Pick pick;
+  pick.what = Pick::What::Command;
+  pick.command = ticket->command.id;
+  return pick;
+}
+
+std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
+{
+  std::optional<std::size_t> most_urgent;
+  for (std::size_t index = 0; index < views.size(); ++index)
+  {
+    const InverterView& view = views[index];
+    if (view.offline || !view.serve_by || *view.serve_by > now || view.refresh_not_before > now)
+    {
+      continue;
+    }
+    if (!most_urgent || *view.serve_by < *views[*most_urgent].serve_by)
+    {
+      most_urgent = index;
+    }
+  }
+  if (!most_urgent)
+  {
+    return std::nullopt;
+  }
+  pause_cut_ = pause_cut_ || now < pause_until_;
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *most_urgent;
+  return pick;
+}
+
+std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<InverterView>& views) const
+{
+  if (now < next_probe_)
+  {
+    return std::nullopt;
+  }
+  for (std::size_t step = 0; step < views.size(); ++step)
+  {
+    const std::size_t index = (probe_cursor_ + step) % views.size();
+    if (views[index].offline && views[index].refresh_not_before <= now)
+    {
+      Pick pick;
+      pick.what = views[index].stop_pending ? Pick::What::Stop : Pick::What::Probe;
+      pick.inverter = index;
+      pick.probe = true;
+      return pick;
+    }
+  }
+  return std::nullopt;
+}
+
+bool Scheduler::takesPart(const InverterView& view) const
+{
+  return !view.offline && (!view.at_rest || rounds_ % settings_.idle_divisor == 0);
+}
+
+bool Scheduler::findNextOfCycle(TimePoint now, const std::vector<InverterView>& views)
+{
+  for (; cursor_ < views.size(); ++cursor_)
+  {
+    if (takesPart(views[cursor_]) && views[cursor_].refresh_not_before <= now)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Scheduler::closeCycle(TimePoint now)
+{
+  ++rounds_;
+  cycle_open_ = false;
+  if (refreshed_in_cycle_)
+  {
+    ++cycles_;
+    cycle_time_ = now - cycle_start_;
+    pause_until_ = now + settings_.interval;
+  }
+}
+
+std::optional<Pick> Scheduler::pickRefresh(TimePoint now, const std::vector<InverterView>& views)
+{
+  // One round more than the divisor, so that a cycle without anybody cannot hide those at rest.
+  for (unsigned round = 0; round <= settings_.idle_divisor; ++round)
+  {
+    if (now < pause_until_)
+    {
+      return std::nullopt;
+    }
+    if (!cycle_open_)
+    {
+      cycle_open_ = true;
+      cycle_start_ = now;
+      refreshed_in_cycle_ = false;
+      cursor_ = 0;
+    }
+    if (findNextOfCycle(now, views))
+    {
+      Pick pick;
+      pick.what = Pick::What::Refresh;
+      pick.inverter = cursor_;
+      return pick;
+    }
+    closeCycle(now);
+  }
+  return std::nullopt;
+}
+
+std::optional<Pick> Scheduler::pickBackground(const std::vector<InverterView>& views) const
+{
+  for (std::size_t step = 0; step < views.size(); ++step)
+  {
+    const std::size_t index = (background_cursor_ + step) % views.size();
+    if (views[index].background && !views[index].offline)
+    {
+      Pick pick;
+      pick.what = Pick::What::Background;
+      pick.inverter = index;
+      return pick;
+    }
+  }
+  return std::nullopt;
+}
+
+Pick Scheduler::nothing(TimePoint now, const std::vector<InverterView>& views) const
+{
+  Pick pick;
+  pick.wake = now + seconds(LONGEST_SLEEP_S);
+  const auto wakeAt = [&](TimePoint time) {
+    if (time > now)
+    {
+      pick.wake = std::min(pick.wake, time);
+    }
+  };
+  wakeAt(pause_until_);
+  wakeAt(next_probe_);
+  for (const InverterView& view : views)
+  {
+    wakeAt(view.refresh_not_before);
+    if (view.serve_by)
+    {
+      wakeAt(*view.serve_by);
+    }
+  }
+  for (const Ticket& ticket : tickets_)
+  {
+    wakeAt(ticket.command.not_before);
+  }
+  return pick;
+}
+
+void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered)
+{
+  ++exchanges_;
+  ++exchanges_without_background_;
+  if (pick.probe)
+  {
+    probe_cursor_ = pick.inverter + 1;
+    const Duration cost = answered ? Duration::zero() : end - start;
+    next_probe_ = end + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
+  }
+  switch (pick.what)
+  {
+    case Pick::What::Command:
+    {
+      const auto ticket = find(pick.command);
+      if (ticket != tickets_.end() && more)
+      {
+        unit_ = ticket->command.kind == CommandKind::Velocity ? pick.command : unit_;
+        break;
+      }
+      ++commands_in_a_row_;
+      erase(pick.command);
+      break;
+    }
+    case Pick::What::Refresh:
+      commands_in_a_row_ = 0;
+      if (cycle_open_ && pick.inverter == cursor_)
+      {
+        refreshed_in_cycle_ = true;
+        cursor_ += more ? 0 : 1;
+      }
+      break;
+    case Pick::What::Background:
+      exchanges_without_background_ = 0;
+      background_cursor_ = pick.inverter + 1;
+      break;
+    default:
+      break;
+  }
+}
+
+// --- cycle -----------------------------------------------------------------------------------------------------------
+
+std::uint64_t Scheduler::cycles() const
+{
+  return cycles_;
+}
+
+Duration Scheduler::cycleTime() const
+{
+  return cycle_time_;
+}
+
+bool Scheduler::pauseWasCut() const
+{
+  return pause_cut_;
+}
+
+std::uint64_t Scheduler::exchanges() const
+{
+  return exchanges_;
+}
+
+void Scheduler::restartCycle(TimePoint now)
+{
+  cycle_open_ = false;
+  pause_until_ = now;
+  next_probe_ = now;
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/stop_job.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+StopJob::StopJob(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
+{
+}
+
+std::string StopJob::sequenceFor(StopMode mode) const
+{
+  if (mode == StopMode::Coast && drive_.sequence("coast") != nullptr)
+  {
+    return "coast";
+  }
+  if (mode == StopMode::Quick && drive_.sequence("quick") != nullptr)
+  {
+    return "quick";
+  }
+  return "stop";
+}
+
+const drive::Sequence* StopJob::sequence() const
+{
+  return drive_.sequence(sequenceFor(mode_));
+}
+
+void StopJob::request(TimePoint now, StopMode mode)
+{
+  if (pending_ && (mode == mode_ || mode == StopMode::Decelerate))
+  {
+    return;
+  }
+  attempts_ = pending_ ? attempts_ : 0;
+  pending_ = sequenceFor(mode) != "stop" || drive_.sequence("stop") != nullptr;
+  mode_ = mode;
+  step_ = 0;
+  requested_at_ = now;
+  first_frame_left_ = false;
+  last_error_ = 0;
+}
+
+bool StopJob::pending() const
+{
+  return pending_;
+}
+
+unsigned StopJob::attempts() const
+{
+  return attempts_;
+}
+
+bool StopJob::written() const
+{
+  return step_ >= sequence()->steps.size();
+}
+
+wire::Request StopJob::next() const
+{
+  if (written())
+  {
+    return drive_.read(station_, *drive_.runBlock());
+  }
+  const drive::Step& step = sequence()->steps[step_];
+  return drive_.write(station_, step.point, step.value.value_or(0));
+}
+
+std::optional<Duration> StopJob::sent(TimePoint now)
+{
+  if (first_frame_left_)
+  {
+    return std::nullopt;
+  }
+  first_frame_left_ = true;
+  return now - requested_at_;
+}
+
+StopJob::Progress StopJob::done(const wire::Reply& reply)
+{
+  if (reply.outcome != wire::Outcome::Ok)
+  {
+    last_error_ = reply.error_id;
+    // A read-back that got lost says nothing: RUN may be on or off, so the whole attempt starts again.
+    step_ = 0;
+    ++attempts_;
+    return Progress::Failed;
+  }
+  if (!written())
+  {
+    ++step_;
+    if (!written() || drive_.runBlock())
+    {
+      return Progress::GoesOn;
+    }
+    confirm();
+    return Progress::Confirmed;
+  }
+  drive::Monitor monitor;
+  drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
+  const bool still_on = monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(false);
+  if (still_on)
+  {
+    step_ = 0;
+    ++attempts_;
+    return Progress::Failed;
+  }
+  confirm();
+  return Progress::Confirmed;
+}
+
+void StopJob::confirm()
+{
+  pending_ = false;
+  step_ = 0;
+  attempts_ = 0;
+}
+
+void StopJob::cancel()
+{
+  confirm();
+}
+
+std::uint16_t StopJob::lastError() const
+{
+  return last_error_;
+}
+}  // namespace bus
+}  // namespace inverter_bus

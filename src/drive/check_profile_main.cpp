@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// check_profile FILE: says what is wrong with a drive profile, or that nothing is.
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "inverter_bus/drive/profile.h"
+
+namespace
+{
+std::string nameList(const std::set<std::string>& names)
+{
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+void printSummary(const std::string& path, const inverter_bus::drive::Profile& profile)
+{
+  std::printf("%s: ok, %zu parameters, %zu status items, %zu commands, %zu trip texts\n", path.c_str(),
+              profile.parameters.size(), profile.status.size(), profile.sequences.size(), profile.faults.size());
+  if (!profile.unconfirmed.empty())
+  {
+    std::printf("%s: unconfirmed commands and monitors: %s\n", path.c_str(), nameList(profile.unconfirmed).c_str());
+  }
+  if (!profile.unconfirmed_tables.empty())
+  {
+    std::printf("%s: unconfirmed parameters, ranges and texts: %s\n", path.c_str(),
+                nameList(profile.unconfirmed_tables).c_str());
+  }
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  if (argc != 2)
+  {
+    std::fprintf(stderr, "usage: check_profile FILE\n");
+    return 2;
+  }
+  const std::string path = argv[1];
+  const std::vector<std::string> mistakes = inverter_bus::drive::checkProfile(path);
+  for (const std::string& mistake : mistakes)
+  {
+    std::printf("%s\n", mistake.c_str());
+  }
+  if (!mistakes.empty())
+  {
+    return 1;
+  }
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, error);
+  try
+  {
+    printSummary(path, inverter_bus::drive::loadProfile(absolute.string(), ""));
+  }
+  catch (const inverter_bus::drive::ConfigurationError& changed)
+  {
+    std::printf("%s\n", changed.what());
+    return 1;
+  }
+  return 0;
+}

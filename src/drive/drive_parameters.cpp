@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// The part of Drive that reads and writes the drive's parameters.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "codec.h"
+#include "inverter_bus/drive/drive.h"
+#include "numbers.h"
+
+namespace inverter_bus
+{
+namespace drive
+{
+namespace
+{
+/// A value that lies this close to a whole count is meant to be it (0.1 + 0.2 is not 0.3 in a double).
+constexpr double COUNT_TOLERANCE = 1e-6;
+
+bool isHex(const std::string& name)
+{
+  return name.size() > 2 && name[0] == '0' && (name[1] == 'x' || name[1] == 'X');
+}
+
+/// Any register may be read by the number printed in the manual, whether the table knows it or not.
+std::optional<Parameter> rawRegister(const std::string& name, const Profile& profile)
+{
+  const auto number = parseInteger(name);
+  if (!number || *number > 0xFFFF || *number < profile.first_register)
+  {
+    return std::nullopt;
+  }
+  Parameter parameter;
+  parameter.name = name;
+  parameter.read_only = true;
+  parameter.item.number = static_cast<std::uint16_t>(*number);
+  parameter.item.address = static_cast<std::uint16_t>(*number - profile.first_register);
+  return parameter;
+}
+
+std::optional<Parameter> findByNumber(const std::string& name, const Profile& profile)
+{
+  auto raw = rawRegister(name, profile);
+  if (!raw)
+  {
+    return raw;
+  }
+  const auto same_place = [&raw](const auto& entry) {
+    return entry.second.item.number == raw->item.number && entry.second.item.unconfirmed.empty();
+  };
+  const auto found = std::find_if(profile.parameters.begin(), profile.parameters.end(), same_place);
+  return found == profile.parameters.end() ? raw : std::optional<Parameter>(found->second);
+}
+
+std::string withUnit(double value, const Item& item)
+{
+  return formatNumber(value) + (item.unit.empty() ? "" : " " + item.unit);
+}
+
+std::string outside(const Parameter& parameter, double value, double lowest, double highest, const std::string& why)
+{
+  return parameter.name + ": " + withUnit(value, parameter.item) + " is outside " + formatNumber(lowest) + " to " +
+         withUnit(highest, parameter.item) + why;
+}
+
+/// The value's neighbours on the drive's scale, for the refusal of one that lies between them.
+std::string betweenCounts(const Parameter& parameter, double value, double counts)
+{
+  const Item& item = parameter.item;
+  return parameter.name + ": " + withUnit(value, item) + " is no multiple of the resolution " +
+         withUnit(item.resolution, item) + ": the nearest are " +
+         formatNumber(scaleCounts(std::floor(counts), item.resolution)) + " and " +
+         withUnit(scaleCounts(std::ceil(counts), item.resolution), item);
+}
+
+std::pair<double, double> countLimits(const Item& item)
+{
+  const double counts = item.size == 2 ? 4294967296.0 : 65536.0;
+  const double lowest = item.is_signed ? -counts / 2.0 : 0.0;
+  return { lowest, lowest + counts - 1.0 };
+}
+
+std::string refusal(const Parameter& parameter, double value, double counts)
+{
+  const Item& item = parameter.item;
+  if (parameter.read_only)
+  {
+    return parameter.name + " is read only";
+  }
+  if (!std::isfinite(value))
+  {
+    return parameter.name + ": the value is not a finite number";
+  }
+  const bool limited = parameter.range && !parameter.range_unconfirmed;
+  // Half a tolerance of slack: 3600.0 must not fail because 360000 / 100 is a hair beyond.
+  const double slack = COUNT_TOLERANCE * item.resolution;
+  if (limited && (value < parameter.range->first - slack || value > parameter.range->second + slack))
+  {
+    return outside(parameter, value, parameter.range->first, parameter.range->second, "");
+  }
+  const auto limits = countLimits(item);
+  if (counts < limits.first - COUNT_TOLERANCE || counts > limits.second + COUNT_TOLERANCE)
+  {
+    return outside(parameter, value, scaleCounts(limits.first, item.resolution),
+                   scaleCounts(limits.second, item.resolution), ", what the register can hold");
+  }
+  return std::fabs(counts - std::round(counts)) > COUNT_TOLERANCE ? betweenCounts(parameter, value, counts) : "";
+}
+}  // namespace
+
+std::optional<Parameter> Drive::findParameter(const std::string& name, bool for_write) const
+{
+  if (isHex(name))
+  {
+    return for_write ? std::nullopt : findByNumber(name, profile_);
+  }
+  const auto found = profile_.parameters.find(name);
+  if (found == profile_.parameters.end() || !found->second.item.unconfirmed.empty() ||
+      (for_write && found->second.read_only))
+  {
+    return std::nullopt;
+  }
+  return found->second;
+}
+
+std::string Drive::missingForParameter(const std::string& name) const
+{
+  const auto found = profile_.parameters.find(name);
+  return found == profile_.parameters.end() ? "" : found->second.item.unconfirmed;
+}
+
+std::string Drive::parameterRefusal(const std::string& name, bool for_write) const
+{
+  if (findParameter(name, for_write))
+  {
+    return "";
+  }
+  const std::string missing = missingForParameter(name);
+  if (!missing.empty())
+  {
+    return "parameter " + name + " is not confirmed for this drive: check it in the drive's manual, then add " +
+           missing + " to confirm";
+  }
+  if (profile_.parameters.count(name) != 0)
+  {
+    return "parameter " + name + " is read only";
+  }
+  if (isHex(name))
+  {
+    return for_write ? "register numbers are for reading only: a write needs a name of the profile"
+                     : "register " + name + " does not exist";
+  }
+  return "parameter " + name + " is not in the profile " + profile_.name;
+}
+
+wire::Request Drive::readParameter(std::uint8_t station, const Parameter& parameter) const
+{
+  wire::Request request;
+  request.station = station;
+  request.pdu = encodeRead(parameter.item.space, parameter.item.address, parameter.item.size);
+  return request;
+}
+
+double Drive::decodeParameter(const Parameter& parameter, const wire::Bytes& reply) const
+{
+  const auto raw = extractRaw(parameter.item, parameter.item.number, reply);
+  return raw ? scaled(parameter.item, *raw) : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::uint32_t Drive::rawParameter(const Parameter& parameter, const wire::Bytes& reply) const
+{
+  return extractRaw(parameter.item, parameter.item.number, reply).value_or(0);
+}
+
+Encoded Drive::encodeParameter(const Parameter& parameter, double value) const
+{
+  Encoded encoded;
+  const double counts = toCounts(value, parameter.item.resolution);
+  encoded.error = refusal(parameter, value, counts);
+  encoded.ok = encoded.error.empty();
+  if (encoded.ok)
+  {
+    // Through 64 bits: a negative count becomes two's complement of the register's size.
+    const auto whole = static_cast<std::uint64_t>(std::llround(counts));
+    encoded.raw = static_cast<std::uint32_t>(whole & (parameter.item.size == 2 ? 0xFFFFFFFFULL : 0xFFFFULL));
+  }
+  return encoded;
+}
+
+wire::Request Drive::writeParameter(std::uint8_t station, const Parameter& parameter, std::uint32_t raw) const
+{
+  wire::Request request;
+  request.station = station;
+  request.pdu = encodeWrite(parameter.item, raw, profile_);
+  return request;
+}
+}  // namespace drive
+}  // namespace inverter_bus

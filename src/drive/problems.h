@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_SRC_DRIVE_PROBLEMS_H
+#define INVERTER_BUS_SRC_DRIVE_PROBLEMS_H
+
+#include <string>
+#include <vector>
+
+namespace inverter_bus
+{
+namespace drive
+{
+/// Mistakes found while reading. Reading goes on after one, so that `check_profile` shows them all.
+class Problems
+{
+public:
+  /// \p where "file:line" or the scan list entry, \p key the way to the value ("points.run.coil"), may be empty.
+  void add(const std::string& where, const std::string& key, const std::string& what);
+  bool empty() const;
+  const std::vector<std::string>& lines() const;
+
+private:
+  std::vector<std::string> lines_;
+};
+}  // namespace drive
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SRC_DRIVE_PROBLEMS_H

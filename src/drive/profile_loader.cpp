@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "inverter_bus/drive/profile.h"
+#include "problems.h"
+#include "profile_builder.h"
+#include "profile_overrides.h"
+#include "yaml_reader.h"
+#include "yaml_value.h"
+
+namespace inverter_bus
+{
+namespace drive
+{
+namespace
+{
+constexpr const char* EXTENSION = ".yaml";
+
+/// The file of a profile; a problem that lists the known names if there is none.
+std::string profilePath(const std::string& name_or_path, const std::string& directory, const std::string& place,
+                        Problems& problems)
+{
+  if (!name_or_path.empty() && name_or_path[0] == '/')
+  {
+    return name_or_path;
+  }
+  const std::vector<std::string> known = knownProfiles(directory);
+  if (std::find(known.begin(), known.end(), name_or_path) != known.end())
+  {
+    return (std::filesystem::path(directory) / (name_or_path + EXTENSION)).string();
+  }
+  problems.add(place.empty() ? directory : place, "drive",
+               "value '" + name_or_path + "': allowed: an absolute path, or one of: " +
+                   (known.empty() ? "(no profiles in " + directory + ")" : join(known)));
+  return "";
+}
+
+void applyOverrides(YamlValue& root, const ProfileChanges& changes, Problems& problems)
+{
+  if (changes.overrides_yaml.empty())
+  {
+    return;
+  }
+  const std::string place = changes.place.empty() ? "overrides" : changes.place;
+  const auto overrides = parseYaml(changes.overrides_yaml, place, false, problems);
+  if (!overrides || overrides->kind == YamlValue::Kind::Empty)
+  {
+    return;
+  }
+  if (overrides->kind != YamlValue::Kind::Map)
+  {
+    problems.add(place, "overrides", "allowed: a map of profile keys");
+    return;
+  }
+  mergeOverrides(root, *overrides);
+}
+
+Profile readProfile(const std::string& path, const ProfileChanges& changes, Problems& problems)
+{
+  const auto text = readTextFile(path, problems);
+  auto root = text ? parseYaml(*text, path, true, problems) : std::nullopt;
+  if (!root)
+  {
+    return Profile();
+  }
+  const std::set<std::string> known = unconfirmedNames(*root);
+  applyOverrides(*root, changes, problems);
+  confirm(*root, changes.confirm, known, changes.place.empty() ? path : changes.place, problems);
+  Profile profile = buildProfile(*root, problems);
+  profile.file = path;
+  return profile;
+}
+}  // namespace
+
+std::vector<std::string> knownProfiles(const std::string& directory)
+{
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error))
+  {
+    const std::filesystem::path& path = entry->path();
+    if (path.extension() == EXTENSION)
+    {
+      names.push_back(path.stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Profile loadProfile(const std::string& name_or_path, const std::string& directory, const ProfileChanges& changes)
+{
+  Problems problems;
+  const std::string path = profilePath(name_or_path, directory, changes.place, problems);
+  Profile profile = problems.empty() ? readProfile(path, changes, problems) : Profile();
+  if (!problems.empty())
+  {
+    throw ConfigurationError(problems.lines().front());
+  }
+  return profile;
+}
+
+std::vector<std::string> checkProfile(const std::string& path)
+{
+  Problems problems;
+  readProfile(path, ProfileChanges(), problems);
+  return problems.lines();
+}
+}  // namespace drive
+}  // namespace inverter_bus

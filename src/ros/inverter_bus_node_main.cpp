@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <cstdio>
+#include <exception>
+
+#include <ros/init.h>
+
+#include "inverter_bus/ros/lifetime.h"
+#include "inverter_bus/ros/node.h"
+#include "inverter_bus/ros/start_up.h"
+
+int main(int argc, char** argv)
+{
+  using namespace inverter_bus::ros_node;
+  try
+  {
+    Lifetime lifetime;
+    ros::init(argc, argv, "inverter_bus_node", ros::init_options::NoSigintHandler);
+    if (!waitForMaster(lifetime.end()))
+    {
+      return 0;
+    }
+    const int status = runNode(lifetime);
+    ros::shutdown();
+    return status;
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "inverter_bus_node: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/ros/node.h"
+
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/node_handle.h>
+#include <ros/this_node.h>
+
+#include "inverter_bus/bus/bus.h"
+#include "inverter_bus/ros/commands.h"
+#include "inverter_bus/ros/diagnostics.h"
+#include "inverter_bus/ros/parameters.h"
+#include "inverter_bus/ros/publishing.h"
+#include "inverter_bus/ros/services.h"
+#include "inverter_bus/ros/start_up.h"
+#include "inverter_bus/ros/trace_files.h"
+#include "inverter_bus/wire/serial_port.h"
+
+namespace inverter_bus
+{
+namespace ros_node
+{
+namespace
+{
+constexpr Duration WATCH_PERIOD = std::chrono::milliseconds(100);
+constexpr Duration ANSWER_TIME = std::chrono::seconds(1);
+
+/// After ROS went down by itself, rosconsole is silent: the last line must come through all the same.
+void logLine(bus::Level level, const std::string& text)
+{
+  if (ros::isShuttingDown())
+  {
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
+  else if (level == bus::Level::Ok)
+  {
+    ROS_INFO_STREAM(text);
+  }
+  else if (level == bus::Level::Warn)
+  {
+    ROS_WARN_STREAM(text);
+  }
+  else
+  {
+    ROS_ERROR_STREAM(text);
+  }
+}
+
+std::optional<bus::Configuration> readNodeConfiguration()
+{
+  try
+  {
+    return bus::readConfiguration(readParameters(), "~", profileDirectory());
+  }
+  catch (const drive::ConfigurationError& error)
+  {
+    ROS_FATAL_STREAM("wrong configuration: " << error.what());
+    return std::nullopt;
+  }
+}
+
+void logStart(const bus::BusConfig& config, const bus::Bus& bus)
+{
+  for (const std::string& line : effectiveConfiguration(config))
+  {
+    ROS_INFO_STREAM(line);
+  }
+  for (const bus::Finding& finding : bus.budget())
+  {
+    logLine(finding.level, finding.text);
+  }
+}
+
+/// Waits until the node shall end. Returns its exit status.
+int watch(const Lifetime& lifetime, const bus::Bus& bus)
+{
+  while (!lifetime.waitForEnd(WATCH_PERIOD))
+  {
+    if (bus.portInUse())
+    {
+      return 1;
+    }
+  }
+  return 0;
+}
+
+void logEnd(int status, const bus::BusConfig& config, const std::vector<std::string>& unconfirmed)
+{
+  std::string names;
+  for (const std::string& line : unconfirmed)
+  {
+    names += (names.empty() ? "" : "; ") + line;
+  }
+  if (!names.empty())
+  {
+    logLine(bus::Level::Error, "shutdown: NOT confirmed as stopped, look after them: " + names);
+  }
+  else if (status != 0)
+  {
+    logLine(bus::Level::Error, "port " + config.port +
+                                   " is in use by another program, tried for 15 s: end that program "
+                                   "or choose another port");
+  }
+  else
+  {
+    logLine(bus::Level::Ok, "shutdown: every motor that this node may have set running is confirmed as stopped");
+  }
+}
+}  // namespace
+
+int runNode(Lifetime& lifetime)
+{
+  ros::NodeHandle node("~");
+  lifetime.takeOverKill();
+  const std::optional<bus::Configuration> configuration = readNodeConfiguration();
+  if (!configuration)
+  {
+    return 1;
+  }
+  const bus::BusConfig& config = configuration->bus;
+  TraceFiles traces(config.trace_directory, ros::this_node::getName(),
+                    [](const std::string& text) { ROS_WARN_STREAM(text); });
+  Publishing publishing(node, *configuration, traces);
+  bus::Bus bus(*configuration, wire::makeSerialPort(config.serial), publishing);
+  logStart(config, bus);
+  Services services(node, config, bus, traces);
+  Commands commands(node, config, bus);
+  Diagnostics diagnostics(config, bus, commands);
+  // Everything that may wait for the master lies behind: from here on the end is ours.
+  lifetime.busIsRunning();
+  bus.start();
+  commands.start();
+  const int status = watch(lifetime, bus);
+
+  const std::vector<std::string> unconfirmed = bus.shutdown();
+  lifetime.finishSoon(status);
+  services.drain(ANSWER_TIME);
+  commands.stop();
+  diagnostics.stop();
+  traces.stop();
+  publishing.stop();
+  logEnd(status, config, unconfirmed);
+  return status;
+}
+}  // namespace ros_node
+}  // namespace inverter_bus

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/ros/publishing.h"
+
+#include <chrono>
+#include <utility>
+
+#include <ros/console.h>
+
+#include "inverter_bus/ros/status_conversion.h"
+
+namespace inverter_bus
+{
+namespace ros_node
+{
+namespace
+{
+/// What waits beyond this is out of date: the oldest goes.
+constexpr std::size_t MOST_WAITING = 500;
+
+constexpr std::uint32_t STATUS_QUEUE = 10;
+}  // namespace
+
+Publishing::Publishing(ros::NodeHandle& node, const bus::Configuration& configuration, TraceFiles& traces)
+  : config_(configuration.bus), drives_(configuration.drives), traces_(traces)
+{
+  for (const bus::InverterConfig& inverter : config_.inverters)
+  {
+    inverter_publishers_.push_back(node.advertise<InverterStatus>(inverter.name + "/status", STATUS_QUEUE));
+  }
+  bus_publisher_ = node.advertise<BusStatus>("bus_status", 1, true);
+  thread_ = std::thread([this] { work(); });
+}
+
+Publishing::~Publishing()
+{
+  stop();
+}
+
+void Publishing::inverterStatus(const bus::InverterStatus& status)
+{
+  add(statuses_, status);
+}
+
+void Publishing::busStatus(const bus::BusStatus& status)
+{
+  add(statuses_, status);
+}
+
+void Publishing::log(const bus::Finding& finding)
+{
+  add(findings_, finding);
+}
+
+void Publishing::trace(bus::TraceDump dump)
+{
+  traces_.writeSoon(std::move(dump));
+}
+
+void Publishing::stop()
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_one();
+  if (thread_.joinable())
+  {
+    thread_.join();
+  }
+}
+
+void Publishing::add(std::deque<Item>& queue, Item item)
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (queue.size() >= MOST_WAITING)
+    {
+      queue.pop_front();
+    }
+    queue.push_back(std::move(item));
+  }
+  changed_.notify_one();
+}
+
+void Publishing::work()
+{
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true)
+  {
+    changed_.wait(lock, [this] { return stopping_ || !findings_.empty() || !statuses_.empty(); });
+    if (findings_.empty() && statuses_.empty())
+    {
+      return;
+    }
+    std::deque<Item>& queue = findings_.empty() ? statuses_ : findings_;
+    const Item item = std::move(queue.front());
+    queue.pop_front();
+    lock.unlock();
+    handle(item);
+    lock.lock();
+  }
+}
+
+void Publishing::handle(const Item& item)
+{
+  std::visit([this](const auto& report) { publish(report); }, item);
+}
+
+void Publishing::publish(const bus::InverterStatus& status)
+{
+  if (status.index < inverter_publishers_.size())
+  {
+    inverter_publishers_[status.index].publish(
+        toMessage(status, config_.inverters[status.index], drives_[status.index], Moment::now()));
+  }
+}
+
+void Publishing::publish(const bus::BusStatus& status)
+{
+  bus_publisher_.publish(toMessage(status, config_.port, Moment::now()));
+}
+
+void Publishing::publish(const bus::Finding& finding)
+{
+  if (!throttle_.admit(finding.text, std::chrono::steady_clock::now()))
+  {
+    return;
+  }
+  const std::size_t suppressed = throttle_.takeSuppressed();
+  const std::string more = suppressed == 0 ? "" : " (" + std::to_string(suppressed) + " repeated lines left out)";
+  switch (finding.level)
+  {
+    case bus::Level::Ok:
+      ROS_INFO_STREAM(finding.text << more);
+      break;
+    case bus::Level::Warn:
+      ROS_WARN_STREAM(finding.text << more);
+      break;
+    case bus::Level::Error:
+      ROS_ERROR_STREAM(finding.text << more);
+      break;
+  }
+}
+}  // namespace ros_node
+}  // namespace inverter_bus

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+// The simulated bus as a ROS node: parameters in, service ~command, everything else is inverter_bus_simulation.
+
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <ros/ros.h>
+
+#include "inverter_bus/InjectFault.h"
+#include "inverter_bus/simulation/bus_config.h"
+#include "inverter_bus/simulation/bus_runner.h"
+#include "inverter_bus/simulation/simulated_bus.h"
+
+namespace
+{
+namespace sim = inverter_bus::simulation;
+
+/// A parameter tree as YAML text (flow style, every scalar quoted).
+std::string toYaml(XmlRpc::XmlRpcValue& value)
+{
+  std::string text;
+  switch (value.getType())
+  {
+    case XmlRpc::XmlRpcValue::TypeStruct:
+      for (auto& entry : value)
+      {
+        text += (text.empty() ? "" : ", ") + ("\"" + entry.first + "\": ") + toYaml(entry.second);
+      }
+      return "{" + text + "}";
+    case XmlRpc::XmlRpcValue::TypeArray:
+      for (int i = 0; i < value.size(); ++i)
+      {
+        text += (i == 0 ? "" : ", ") + toYaml(value[i]);
+      }
+      return "[" + text + "]";
+    case XmlRpc::XmlRpcValue::TypeBoolean:
+      return static_cast<bool>(value) ? "true" : "false";
+    case XmlRpc::XmlRpcValue::TypeInt:
+      return std::to_string(static_cast<int>(value));
+    case XmlRpc::XmlRpcValue::TypeDouble:
+      return std::to_string(static_cast<double>(value));
+    case XmlRpc::XmlRpcValue::TypeString:
+      for (const char character : static_cast<std::string>(value))
+      {
+        text += std::string(character == '"' || character == '\\' ? "\\" : "") + character;
+      }
+      return "\"" + text + "\"";
+    default:
+      return "~";
+  }
+}
+
+sim::BusConfig readConfig()
+{
+  XmlRpc::XmlRpcValue parameters;
+  if (!ros::param::get(ros::this_node::getName(), parameters))
+  {
+    throw sim::ConfigError("scan_list: missing (allowed: a scan list loaded into the node's private parameters)");
+  }
+  sim::BusConfig config = sim::busConfigFromText(toYaml(parameters));
+  double turnaround = 0.0;
+  if (ros::param::get("~turnaround", turnaround))
+  {
+    for (sim::DriveConfig& drive : config.drives)
+    {
+      drive.options.turnaround = turnaround;
+    }
+  }
+  return config;
+}
+
+std::string readLink()
+{
+  std::string link;
+  if (!ros::param::get("~link", link) && !ros::param::get("~port", link))
+  {
+    throw sim::ConfigError("link: missing (allowed: name of the link to the pseudo-terminal, as ~link or ~port)");
+  }
+  return link;
+}
+
+sim::LineOptions readLineOptions()
+{
+  const std::string gap = ros::param::param<std::string>("~gap", "enforce");
+  if (gap != "enforce" && gap != "ignore")
+  {
+    throw sim::ConfigError("gap: " + gap + " (allowed: enforce, ignore)");
+  }
+  sim::LineOptions options;
+  options.gap = gap == "enforce" ? sim::GapRule::ENFORCE : sim::GapRule::IGNORE;
+  options.gap_tolerance = sim::seconds(ros::param::param("~gap_tolerance", 0.0003));
+  options.delivery_step = std::chrono::microseconds(500);
+  options.seed = static_cast<std::uint64_t>(ros::param::param("~seed", 1));
+  return options;
+}
+
+std::unique_ptr<std::ofstream> openTrace()
+{
+  const std::string path = ros::param::param<std::string>("~trace", "");
+  if (path.empty())
+  {
+    return nullptr;
+  }
+  auto file = std::make_unique<std::ofstream>(path, std::ios::app);
+  if (!*file)
+  {
+    throw sim::ConfigError("trace: " + path + " can't be written (allowed: a file in a writable directory)");
+  }
+  return file;
+}
+
+void play()
+{
+  ros::NodeHandle node("~");
+  const std::unique_ptr<std::ofstream> trace = openTrace();
+  sim::SimulatedBus bus(readConfig(), readLineOptions(), sim::Clock::now());
+  if (trace)
+  {
+    bus.setObserver([&](const sim::FrameRecord& frame) { *trace << sim::frameText(frame, bus.start()) << std::endl; });
+  }
+  sim::BusRunner runner(bus, readLink());
+  std::exception_ptr failure;
+  std::thread line([&] {
+    try
+    {
+      runner.run();
+    }
+    catch (...)
+    {
+      failure = std::current_exception();
+      ros::requestShutdown();
+    }
+  });
+  const boost::function<bool(inverter_bus::InjectFault::Request&, inverter_bus::InjectFault::Response&)> onCommand =
+      [&runner](inverter_bus::InjectFault::Request& request, inverter_bus::InjectFault::Response& response) {
+        response.message = runner.command(request.command);
+        response.success = static_cast<unsigned char>(response.message.compare(0, 2, "ok") == 0);
+        return true;
+      };
+  ros::ServiceServer service = node.advertiseService("command", onCommand);
+  ROS_INFO("simulated bus ready: %s -> %s, %zu drives", runner.terminal().link().c_str(),
+           runner.terminal().path().c_str(), bus.drives().size());
+  ros::spin();
+  service.shutdown();
+  runner.stop();
+  line.join();
+  if (failure)
+  {
+    std::rethrow_exception(failure);
+  }
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "simulated_bus");
+  const auto onSignal = [](int) { ros::requestShutdown(); };
+  std::signal(SIGTERM, onSignal);  // roscpp itself looks after SIGINT only
+  std::signal(SIGHUP, onSignal);
+  try
+  {
+    play();
+    return EXIT_SUCCESS;
+  }
+  catch (const std::exception& error)
+  {
+    ROS_FATAL("%s", error.what());
+    return EXIT_FAILURE;
+  }
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/ros/start_up.h"
+
+#include <chrono>
+#include <sstream>
+
+#include <ros/console.h>
+#include <ros/master.h>
+
+namespace inverter_bus
+{
+namespace ros_node
+{
+namespace
+{
+constexpr Duration MASTER_PERIOD = std::chrono::milliseconds(200);
+
+char parityLetter(wire::Parity parity)
+{
+  switch (parity)
+  {
+    case wire::Parity::Even:
+      return 'E';
+    case wire::Parity::Odd:
+      return 'O';
+    default:
+      return 'N';
+  }
+}
+
+const char* rs485Text(wire::Rs485 mode)
+{
+  switch (mode)
+  {
+    case wire::Rs485::Kernel:
+      return "kernel";
+    case wire::Rs485::RtsHigh:
+      return "rts_high";
+    case wire::Rs485::RtsLow:
+      return "rts_low";
+    default:
+      return "auto";
+  }
+}
+
+std::string busLine(const bus::BusConfig& config)
+{
+  std::ostringstream line;
+  line << "port " << config.port << ", " << config.protocol << ", " << config.serial.baud_rate << " baud "
+       << config.serial.data_bits << parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
+       << rs485Text(config.serial.rs485) << (config.exclusive ? ", exclusive" : ", shared") << ", interval "
+       << config.interval << " s, response_timeout " << config.response_timeout << " s, retries " << config.retries
+       << ", offline_after " << config.offline_after << ", idle_divisor " << config.idle_divisor
+       << ", realtime_priority " << config.realtime_priority << ", parameter_access "
+       << (config.parameters_read_only ? "read_only" : "read_write") << ", trace_directory " << config.trace_directory;
+  return line.str();
+}
+
+std::string inverterLine(const bus::InverterConfig& config)
+{
+  std::ostringstream line;
+  line << config.name << ": station " << static_cast<int>(config.node) << ", " << config.drive << ", "
+       << config.hz_per_unit << " Hz per unit, velocity " << config.min_velocity << " to " << config.max_velocity
+       << ", command_timeout " << config.command_timeout << " s"
+       << (config.command_timeout > 0.0 ? "" : " (never stopped by silence)") << ", response_timeout "
+       << config.response_timeout << " s";
+  line << (config.stop_unexpected_motion ? ", stop_unexpected_motion" : "")
+       << (config.release_on_exit ? ", release_on_exit" : "")
+       << (config.changes.overrides_yaml.empty() ? "" : ", with overrides");
+  for (const std::string& name : config.changes.confirm)
+  {
+    line << ", confirmed: " << name;
+  }
+  return line.str();
+}
+}  // namespace
+
+bool waitForMaster(const SteadyEvent& end)
+{
+  bool told = false;
+  while (!ros::master::check())
+  {
+    if (!told)
+    {
+      ROS_WARN_STREAM("waiting for the ROS master at " << ros::master::getURI() << ": start roscore or roslaunch");
+      told = true;
+    }
+    if (end.waitFor(MASTER_PERIOD))
+    {
+      return false;
+    }
+  }
+  return !end.isSet();
+}
+
+std::vector<std::string> effectiveConfiguration(const bus::BusConfig& config)
+{
+  std::vector<std::string> lines{ busLine(config) };
+  for (const bus::InverterConfig& inverter : config.inverters)
+  {
+    lines.push_back(inverterLine(inverter));
+  }
+  return lines;
+}
+}  // namespace ros_node
+}  // namespace inverter_bus

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/ros/trace_files.h"
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "inverter_bus/ros/trace_text.h"
+
+namespace inverter_bus
+{
+namespace ros_node
+{
+namespace
+{
+namespace fs = std::filesystem;
+
+constexpr Duration AUTOMATIC_PERIOD = std::chrono::seconds(10);
+constexpr std::size_t FILES_KEPT = 50;
+constexpr std::size_t LONGEST_REASON = 60;
+const char* const EXTENSION = ".txt";
+
+/// \p text with everything but letters and digits made a single '_', so that it can't leave the directory.
+std::string safeName(const std::string& text)
+{
+  std::string name;
+  for (const char character : text)
+  {
+    if (std::isalnum(static_cast<unsigned char>(character)) != 0)
+    {
+      name += character;
+    }
+    else if (!name.empty() && name.back() != '_')
+    {
+      name += '_';
+    }
+  }
+  name = name.substr(0, LONGEST_REASON);
+  while (!name.empty() && name.back() == '_')
+  {
+    name.pop_back();
+  }
+  return name;
+}
+
+bool startsAndEndsWith(const std::string& name, const std::string& start, const std::string& end)
+{
+  return name.size() > start.size() + end.size() && name.compare(0, start.size(), start) == 0 &&
+         name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Writes a file that must not exist yet. Returns 0 or an errno.
+int writeNewFile(const std::string& path, const std::string& text)
+{
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+  if (file < 0)
+  {
+    return errno;
+  }
+  int error = 0;
+  std::size_t written = 0;
+  while (written < text.size() && error == 0)
+  {
+    const ssize_t count = ::write(file, text.data() + written, text.size() - written);
+    error = count >= 0 || errno == EINTR ? 0 : errno;
+    written += count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+  return close(file) == 0 || error != 0 ? error : errno;
+}
+}  // namespace
+
+std::string expandHome(const std::string& path)
+{
+  if (path != "~" && path.compare(0, 2, "~/") != 0)
+  {
+    return path;
+  }
+  const char* home = std::getenv("HOME");
+  if (home == nullptr || *home == '\0')
+  {
+    const passwd* user = getpwuid(getuid());
+    home = user != nullptr ? user->pw_dir : "/tmp";
+  }
+  return home + path.substr(1);
+}
+
+TraceFiles::TraceFiles(const std::string& directory, const std::string& node_name, Warn warn)
+  : directory_(expandHome(directory)), prefix_(safeName(node_name) + "-"), warn_(std::move(warn))
+{
+  thread_ = std::thread([this] { work(); });
+}
+
+TraceFiles::~TraceFiles()
+{
+  stop();
+}
+
+void TraceFiles::writeSoon(bus::TraceDump dump)
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const TimePoint now = std::chrono::steady_clock::now();
+    if (stopping_ || waiting_ || (last_automatic_ && now - *last_automatic_ < AUTOMATIC_PERIOD))
+    {
+      return;
+    }
+    last_automatic_ = now;
+    waiting_ = std::move(dump);
+  }
+  changed_.notify_one();
+}
+
+std::string TraceFiles::write(const bus::TraceDump& dump, std::string& error)
+{
+  std::ostringstream text;
+  writeTrace(dump, std::chrono::steady_clock::now(), std::chrono::system_clock::now(), text);
+  const std::lock_guard<std::mutex> lock(writing_);
+  std::error_code result;
+  fs::create_directories(directory_, result);
+  const std::string path = newPath(dump.reason);
+  // Under another name first: whoever watches the directory never sees half a file.
+  const std::string part = path + ".part";
+  const int problem = writeNewFile(part, text.str());
+  if (problem != 0 || std::rename(part.c_str(), path.c_str()) != 0)
+  {
+    error = "can't write the flight recorder into " + directory_ + " (" +
+            std::strerror(problem != 0 ? problem : errno) + "): check trace_directory and the space on its disk";
+    std::remove(part.c_str());
+    return "";
+  }
+  removeOldFiles(path);
+  return path;
+}
+
+void TraceFiles::stop()
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_one();
+  if (thread_.joinable())
+  {
+    thread_.join();
+  }
+}
+
+void TraceFiles::work()
+{
+  std::string last_error;
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true)
+  {
+    changed_.wait(lock, [this] { return stopping_ || waiting_; });
+    if (!waiting_)
+    {
+      return;
+    }
+    const bus::TraceDump dump = std::move(*waiting_);
+    waiting_.reset();
+    lock.unlock();
+    std::string error;
+    if (write(dump, error).empty() && error != last_error)
+    {
+      warn_(error);
+    }
+    last_error = error;
+    lock.lock();
+  }
+}
+
+/// The number keeps names apart and in order when the wall clock stands still or goes back.
+std::string TraceFiles::newPath(const std::string& reason)
+{
+  char number[16];
+  std::snprintf(number, sizeof number, "-%04u-", ++number_ % 10000U);
+  const std::string name =
+      prefix_ + fileStamp(std::chrono::system_clock::now()) + number + safeName(reason) + EXTENSION;
+  return (fs::path(directory_) / name).string();
+}
+
+void TraceFiles::removeOldFiles(const std::string& newest) const
+{
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error))
+  {
+    const std::string path = entry->path().string();
+    if (path != newest && startsAndEndsWith(entry->path().filename().string(), prefix_, EXTENSION))
+    {
+      files.push_back(path);
+    }
+  }
+  std::sort(files.begin(), files.end());
+  for (std::size_t i = 0; i + FILES_KEPT <= files.size(); ++i)
+  {
+    std::remove(files[i].c_str());
+  }
+}
+}  // namespace ros_node
+}  // namespace inverter_bus

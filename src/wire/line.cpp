@@ -1,0 +1,487 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/wire/line.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace inverter_bus
+{
+namespace wire
+{
+namespace
+{
+/// settle() gives up after this long: babble on the line cannot stop a stop.
+constexpr std::chrono::milliseconds LONGEST_SETTLING{ 100 };
+/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter).
+constexpr double REPLY_SLACK_CHARACTERS = 16.0;
+constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
+/// Station and function: from here on something is likelier to be a frame than noise.
+constexpr std::size_t LIKELY_FRAME = 2;
+}  // namespace
+
+/// An exchange whose request has been sent.
+struct Line::Waiting
+{
+  explicit Waiting(const Request& asked) : request(asked)
+  {
+  }
+
+  const Request& request;
+  TimePoint sent_at;
+  TimePoint request_end;
+  /// The first byte must have come by then.
+  TimePoint first_byte_deadline;
+  /// Everything must have.
+  TimePoint last_deadline;
+  std::size_t reply_length = 0;
+  /// Estimated beginning of the bytes that are in the buffer, once there are any.
+  std::optional<TimePoint> first_byte_at;
+  /// The awaited reply has begun.
+  bool begun = false;
+  /// A valid frame came that nobody here had asked for.
+  bool foreign = false;
+  /// No further bytes will come: the beginning of a frame will not become one.
+  bool over = false;
+};
+
+Line::Line(Port& port, Protocol& protocol, Clock& clock, LineTiming timing)
+  : port_(port), protocol_(protocol), clock_(clock), timing_(timing)
+{
+}
+
+void Line::setFrameObserver(FrameObserver observer)
+{
+  observer_ = std::move(observer);
+}
+
+OpenResult Line::open(std::string& error)
+{
+  buffer_.clear();
+  damaged_.clear();
+  bars_.clear();
+  echo_.forget();
+  silent_request_.reset();
+  const OpenResult result = port_.open(error);
+  // Somebody else's frame may have been under way.
+  ready_at_ = clock_.now() + gap();
+  return result;
+}
+
+void Line::close()
+{
+  port_.close();
+}
+
+bool Line::isOpen() const
+{
+  return port_.isOpen();
+}
+
+TimePoint Line::readyAt() const
+{
+  return ready_at_;
+}
+
+bool Line::settle()
+{
+  if (!port_.isOpen())
+  {
+    return false;
+  }
+  const TimePoint give_up = std::max(clock_.now(), ready_at_) + LONGEST_SETTLING;
+  ReceiveResult result = ReceiveResult::Data;
+  while (result == ReceiveResult::Data)
+  {
+    // The rest of a late reply that an adapter delivers in pieces must not run into the next exchange.
+    const bool half_a_frame = buffer_.size() >= LIKELY_FRAME;
+    const TimePoint rest = half_a_frame ? last_byte_at_ + timing_.patience(protocol_.gapCharacters()) : ready_at_;
+    result = receive(std::min(std::max(ready_at_, rest), give_up));
+    consumeIdle();
+    result = result == ReceiveResult::Data && clock_.now() >= give_up ? ReceiveResult::Silence : result;
+  }
+  flushIdle();
+  ready_at_ = std::min(ready_at_, clock_.now());
+  if (result == ReceiveResult::Gone)
+  {
+    port_.close();
+  }
+  return result == ReceiveResult::Silence;
+}
+
+bool Line::mayAsk(const Request& request) const
+{
+  return mayAskAt(request) <= clock_.now();
+}
+
+TimePoint Line::mayAskAt(const Request& request) const
+{
+  return std::max(bars_.barredUntil(protocol_.shape(request)), clock_.now());
+}
+
+Reply Line::exchange(const Request& request, Duration turnaround_after)
+{
+  flushIdle();
+  silent_request_.reset();
+  Reply reply;
+  const Bytes frame = protocol_.frame(request);
+  if (!send(frame, reply))
+  {
+    lose(reply);
+    return reply;
+  }
+  const bool reply_may_equal =
+      !request.broadcast && protocol_.parse(frame.data(), frame.size(), &request).kind == Parsed::Kind::Reply;
+  echo_.expect(frame, reply_may_equal);
+  Waiting waiting = startWaiting(request, frame, reply.sent_at);
+  ready_at_ = waiting.request_end + (request.broadcast ? std::max(gap(), turnaround_after) : gap());
+  waitForReply(waiting, reply);
+  return reply;
+}
+
+Duration Line::cost(const Request& request, Duration drive_delay) const
+{
+  const auto request_length = static_cast<double>(protocol_.requestLength(request));
+  const Duration there = gap() + timing_.characters(request_length);
+  if (request.broadcast)
+  {
+    return there;
+  }
+  const double reply_length = request.expects_reply ? static_cast<double>(protocol_.replyLength(request)) : 0.0;
+  return there + gap() + drive_delay + timing_.characters(reply_length);
+}
+
+Duration Line::costUnanswered(const Request& request) const
+{
+  if (request.broadcast || !request.expects_reply)
+  {
+    return cost(request, Duration{ 0 });
+  }
+  const auto request_length = static_cast<double>(protocol_.requestLength(request));
+  return gap() + timing_.characters(request_length) + gap() + request.reply_delay + request.response_timeout;
+}
+
+const LineCounters& Line::counters() const
+{
+  return counters_;
+}
+
+const LineTiming& Line::timing() const
+{
+  return timing_;
+}
+
+bool Line::echoFound() const
+{
+  return echo_.found();
+}
+
+std::vector<LateReply> Line::takeLateReplies()
+{
+  return std::exchange(late_, {});
+}
+
+bool Line::send(const Bytes& frame, Reply& reply)
+{
+  reply.sent_at = clock_.now();
+  if (!port_.isOpen() || !port_.send(frame))
+  {
+    return false;
+  }
+  ++counters_.requests;
+  observe(FrameEvent::Kind::Request, frame, reply.sent_at);
+  return true;
+}
+
+Line::Waiting Line::startWaiting(const Request& request, const Bytes& frame, TimePoint sent_at)
+{
+  Waiting waiting(request);
+  waiting.sent_at = sent_at;
+  // The UART sends on after the write has returned, unless the write had to wait for it.
+  waiting.request_end = std::max(sent_at + timing_.characters(static_cast<double>(frame.size())), clock_.now());
+  waiting.first_byte_deadline = waiting.request_end + gap();
+  waiting.last_deadline = waiting.first_byte_deadline;
+  if (request.expects_reply && !request.broadcast)
+  {
+    waiting.reply_length = protocol_.replyLength(request);
+    const double characters = static_cast<double>(waiting.reply_length) + REPLY_SLACK_CHARACTERS;
+    waiting.first_byte_deadline += request.reply_delay + request.response_timeout;
+    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + REPLY_SLACK;
+  }
+  return waiting;
+}
+
+void Line::waitForReply(Waiting& waiting, Reply& reply)
+{
+  ReceiveResult result = ReceiveResult::Data;
+  while (result == ReceiveResult::Data)
+  {
+    result = receive(waitUntil(waiting));
+    if (consume(waiting, reply))
+    {
+      return;
+    }
+    if (clock_.now() >= waiting.last_deadline && result == ReceiveResult::Data)
+    {
+      result = ReceiveResult::Silence;
+    }
+  }
+  if (result == ReceiveResult::Gone)
+  {
+    lose(reply);
+    return;
+  }
+  giveUp(waiting, reply);
+}
+
+TimePoint Line::waitUntil(const Waiting& waiting) const
+{
+  const std::size_t pending = buffer_.size() + damaged_.size();
+  if (pending == 0)
+  {
+    return waiting.first_byte_deadline;
+  }
+  const TimePoint rest = last_byte_at_ + timing_.patience(protocol_.gapCharacters());
+  // A reply that broke off or was damaged will not come again; a few stray bytes say nothing about the reply yet.
+  const bool echo_begun = !buffer_.empty() && echo_.holds(buffer_);
+  const bool reply_was_here =
+      waiting.begun || (!echo_begun && waiting.reply_length != 0 && pending >= waiting.reply_length);
+  const bool may_be_a_frame = reply_was_here || !buffer_.empty();
+  const TimePoint at_least = reply_was_here ? rest : waiting.first_byte_deadline;
+  return std::min(may_be_a_frame ? std::max(at_least, rest) : at_least, waiting.last_deadline);
+}
+
+ReceiveResult Line::receive(TimePoint deadline)
+{
+  const bool was_empty = buffer_.empty();
+  const ReceiveResult result = port_.receive(buffer_, deadline);
+  if (result == ReceiveResult::Data)
+  {
+    last_byte_at_ = clock_.now();
+    ready_at_ = std::max(ready_at_, last_byte_at_ + gap());
+    head_at_ = was_empty ? last_byte_at_ : head_at_;
+  }
+  return result;
+}
+
+bool Line::consume(Waiting& waiting, Reply& reply)
+{
+  stripEcho();
+  if (!waiting.first_byte_at && !buffer_.empty())
+  {
+    waiting.first_byte_at = last_byte_at_ - timing_.characters(static_cast<double>(buffer_.size()));
+  }
+  waiting.begun = false;
+  std::size_t before = 0;
+  while (!buffer_.empty() && buffer_.size() != before && (waiting.over || !echo_.holds(buffer_)))
+  {
+    before = buffer_.size();
+    if (consumeHead(waiting, reply))
+    {
+      return true;
+    }
+  }
+  if (buffer_.empty())
+  {
+    // It was noise, or somebody else's.
+    waiting.first_byte_at.reset();
+  }
+  return false;
+}
+
+bool Line::consumeHead(Waiting& waiting, Reply& reply)
+{
+  const Parsed parsed = protocol_.parse(buffer_.data(), buffer_.size(), &waiting.request);
+  switch (parsed.kind)
+  {
+    case Parsed::Kind::Incomplete:
+      waiting.begun = parsed.own;
+      skip(waiting.over ? 1 : 0);
+      return false;
+    case Parsed::Kind::Garbage:
+      skip(parsed.consumed);
+      return false;
+    case Parsed::Kind::Foreign:
+      waiting.foreign |= !noteUnasked(parsed, take(parsed.consumed));
+      return false;
+    case Parsed::Kind::Reply:
+    case Parsed::Kind::Exception:
+      return answer(waiting, parsed, take(parsed.consumed), reply);
+  }
+  return false;
+}
+
+bool Line::answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply)
+{
+  const bool exception = parsed.kind == Parsed::Kind::Exception;
+  // An exception repeats neither address nor count: it could as well be the late answer to a lost request of this
+  // function. Refused here, for "never repeated" must not come from another request's reply.
+  if (exception && bars_.mayBeLate(protocol_.shapeOfReply(parsed.station, parsed.pdu), clock_.now()))
+  {
+    ++counters_.late_replies;
+    observe(FrameEvent::Kind::Late, raw, clock_.now());
+    return false;
+  }
+  accept(waiting, parsed, raw, reply);
+  return true;
+}
+
+void Line::accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply)
+{
+  const bool exception = parsed.kind == Parsed::Kind::Exception;
+  const bool unanswered = parsed.error_id == ERROR_TIMEOUT;
+  echo_.answered(damaged_.empty());
+  reportDamaged();
+  noteAnswer(parsed, raw);
+  if (!exception && protocol_.isLoopback(waiting.request) && mayAsk(waiting.request))
+  {
+    bars_.lift(parsed.station, waiting.sent_at);
+  }
+  reply.outcome = exception ? (unanswered ? Outcome::Timeout : Outcome::Exception) : Outcome::Ok;
+  reply.pdu = parsed.pdu;
+  reply.error_id = parsed.error_id;
+  reply.finished_at = last_byte_at_;
+  reply.turnaround = std::max(Duration{ 0 }, *waiting.first_byte_at - waiting.request_end);
+}
+
+void Line::noteAnswer(const Parsed& parsed, const Bytes& raw)
+{
+  const bool exception = parsed.kind == Parsed::Kind::Exception;
+  observe(exception ? FrameEvent::Kind::Exception : FrameEvent::Kind::Reply, raw, last_byte_at_);
+  ++counters_.replies;
+  counters_.exceptions += exception ? 1 : 0;
+  counters_.timeouts += parsed.error_id == ERROR_TIMEOUT ? 1 : 0;
+}
+
+void Line::giveUp(Waiting& waiting, Reply& reply)
+{
+  reply.finished_at = clock_.now();
+  if (waiting.request.broadcast || !waiting.request.expects_reply)
+  {
+    // What the drive may still say is taken by the next settle().
+    silent_request_ = waiting.request;
+    reply.outcome = Outcome::Ok;
+    return;
+  }
+  waiting.over = true;
+  if (consume(waiting, reply))
+  {
+    return;
+  }
+  const bool damaged = waiting.foreign || !damaged_.empty();
+  reportDamaged();
+  ++(damaged ? counters_.corrupt_replies : counters_.timeouts);
+  reply.outcome = damaged ? Outcome::Damaged : Outcome::Timeout;
+  reply.error_id = damaged ? ERROR_DAMAGED : ERROR_TIMEOUT;
+  bars_.add(protocol_.shape(waiting.request), waiting.request.station, waiting.request_end, reply.finished_at);
+}
+
+void Line::lose(Reply& reply)
+{
+  port_.close();
+  reply.outcome = Outcome::PortLost;
+  reply.error_id = ERROR_PORT_LOST;
+  reply.finished_at = clock_.now();
+}
+
+void Line::consumeIdle()
+{
+  stripEcho();
+  std::size_t before = 0;
+  while (!buffer_.empty() && buffer_.size() != before && !echo_.holds(buffer_))
+  {
+    before = buffer_.size();
+    consumeIdleHead();
+  }
+}
+
+void Line::flushIdle()
+{
+  consumeIdle();
+  while (!buffer_.empty())
+  {
+    // Silence has ended what looked like the beginning of a frame.
+    skip(1);
+    consumeIdle();
+  }
+  reportDamaged();
+}
+
+void Line::consumeIdleHead()
+{
+  const Request* const request = silent_request_ ? &*silent_request_ : nullptr;
+  const Parsed parsed = protocol_.parse(buffer_.data(), buffer_.size(), request);
+  switch (parsed.kind)
+  {
+    case Parsed::Kind::Incomplete:
+      return;
+    case Parsed::Kind::Garbage:
+      skip(parsed.consumed);
+      return;
+    case Parsed::Kind::Foreign:
+      noteUnasked(parsed, take(parsed.consumed));
+      return;
+    case Parsed::Kind::Reply:
+    case Parsed::Kind::Exception:
+      noteAnswer(parsed, take(parsed.consumed));
+      return;
+  }
+}
+
+void Line::stripEcho()
+{
+  counters_.echoes += echo_.strip(buffer_, damaged_) ? 1 : 0;
+}
+
+/// True if \p parsed is the late reply to a lost request, false if nobody here has asked for it.
+bool Line::noteUnasked(const Parsed& parsed, const Bytes& raw)
+{
+  const auto late = bars_.take(protocol_.shapeOfReply(parsed.station, parsed.pdu), clock_.now());
+  observe(late ? FrameEvent::Kind::Late : FrameEvent::Kind::Foreign, raw, last_byte_at_);
+  ++(late ? counters_.late_replies : counters_.foreign_frames);
+  if (late && late->request_end)
+  {
+    late_.push_back({ parsed.station, head_at_ - *late->request_end });
+  }
+  return late.has_value();
+}
+
+void Line::observe(FrameEvent::Kind kind, const Bytes& bytes, TimePoint time)
+{
+  if (observer_)
+  {
+    observer_({ kind, time, bytes });
+  }
+}
+
+void Line::reportDamaged()
+{
+  if (!damaged_.empty())
+  {
+    observe(FrameEvent::Kind::Damaged, damaged_, last_byte_at_);
+    damaged_.clear();
+  }
+}
+
+void Line::skip(std::size_t count)
+{
+  const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(count);
+  damaged_.insert(damaged_.end(), buffer_.begin(), end);
+  buffer_.erase(buffer_.begin(), end);
+}
+
+Bytes Line::take(std::size_t count)
+{
+  const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(count);
+  Bytes bytes(buffer_.begin(), end);
+  buffer_.erase(buffer_.begin(), end);
+  head_at_ = last_byte_at_;
+  return bytes;
+}
+
+Duration Line::gap() const
+{
+  return timing_.gap(protocol_.gapCharacters());
+}
+}  // namespace wire
+}  // namespace inverter_bus

@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+"""Compares what README and docs say with the code: names, types, defaults, ranges, constants, bounds, and test names."""
+import glob
+import os
+import re
+import subprocess
+import unittest
+
+import yaml
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+
+def read(*parts):
+    with open(os.path.join(ROOT, *parts), encoding='utf-8') as stream:
+        return stream.read()
+
+
+def code(pattern):
+    return '\n'.join(read(path) for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True)))
+
+
+def table(text, heading):
+    """The first table below a heading, as a list of rows; back-ticks taken off."""
+    section = re.split(r'^#+ ', text.split('\n%s\n' % heading, 1)[1], maxsplit=1, flags=re.MULTILINE)[0]
+    lines = [line for line in section.splitlines() if line.startswith('|')]
+    rows = [[cell.strip().strip('`') for cell in re.split(r'(?<!\\)\|', line)[1:-1]] for line in lines]
+    return rows[2:]
+
+
+def members(source, struct):
+    """Members of a C++ struct: name to (type, default)."""
+    body = re.search(r'struct %s\n\{\n(.*?)\n\};' % struct, source, re.DOTALL).group(1)
+    found = re.findall(r'^  ([\w:<>]+) (\w+)(?:\s*=\s*([^;]+)|\{([^;]*)\})?;', body, re.MULTILINE)
+    return {name: (kind, (value or braces).strip()) for kind, name, value, braces in found}
+
+
+TYPES = {'std::string': 'string', 'double': 'double', 'int': 'int', 'unsigned': 'int', 'bool': 'bool',
+         'std::uint8_t': 'int', 'std::optional<double>': 'double', 'std::vector<int>': 'list of int'}
+
+
+class Readme(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.readme = read('README.md')
+        cls.configuration = code('src/bus/configuration*.cpp')
+        header = read('include/inverter_bus/bus/configuration.h')
+        cls.bus = members(header, 'BusConfig')
+        cls.bus.update(members(read('include/inverter_bus/wire/serial_port.h'), 'SerialSettings'))
+        cls.entry = members(header, 'InverterConfig')
+
+    def listed(self, name):
+        """Keys that the code accepts, from its own list."""
+        body = re.search(r'%s(?: keys|\(\)\n\{\n  return)?\s*\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
+        return re.findall(r'"(\w+)"', body)
+
+    def testBusParametersAreThoseOfTheCode(self):
+        documented = [row[0] for row in table(self.readme, '### The bus')]
+        self.assertEqual(documented, self.listed('BUS_KEYS'))
+
+    def testEntryParametersAreThoseOfTheCode(self):
+        documented = [row[0] for row in table(self.readme, '### An entry of the scan list')]
+        self.assertEqual(documented, ['name', 'node'] + self.listed('sharedKeys'))
+
+    def assertRows(self, rows, known):
+        for name, kind, default, _range, _meaning in rows:
+            if name not in known:
+                continue
+            cpp_type, cpp_default = known[name]
+            if cpp_type in TYPES:
+                self.assertEqual(kind, TYPES[cpp_type], name)
+            if default.startswith(('required', 'none', 'the ')) or cpp_type not in TYPES:
+                continue
+            self.assertEqual(default.strip('"'), cpp_default.strip('"').strip('{} ') if kind != 'list of int' else
+                             '[%s]' % cpp_default.strip('{} '), name)
+
+    def testTypesAndDefaultsAreThoseOfTheCode(self):
+        self.assertRows(table(self.readme, '### The bus'), self.bus)
+        self.assertRows(table(self.readme, '### An entry of the scan list'), self.entry)
+
+    def testChoicesAndTheirDefaultsAreThoseOfTheCode(self):
+        rows = {row[0]: row for row in table(self.readme, '### The bus')}
+        choices = re.findall(r'choice\("(\w+)", "(\w+)",\s*\{([^}]*)\}\)', self.configuration)
+        self.assertEqual(sorted(name for name, _, _ in choices), ['parameter_access', 'parity', 'protocol', 'rs485'])
+        for name, default, values in choices:
+            self.assertEqual(rows[name][2], default, name)
+            self.assertEqual(re.findall(r'\w+', rows[name][3]), re.findall(r'\w+', values), name)
+
+    def testRangesAreThoseOfTheCode(self):
+        rows = {row[0]: row[3] for heading in ('### The bus', '### An entry of the scan list')
+                for row in table(self.readme, heading)}
+        integers = re.findall(r'integer\("(\w+)", bus\.\w+, (\d+), (\d+)\)', self.configuration)
+        self.assertEqual(len(integers), 4)
+        for name, low, high in integers:
+            self.assertEqual(rows[name], '%s to %s' % (low, high), name)
+        ranges = re.findall(r'number\("(\w+)",[^;]*?Range\{ ([\d.]+), ([\d.]+), (true|false), "(\w+)" \}', self.configuration)
+        self.assertGreater(len(ranges), 4)
+        for name, low, high, without_low, unit in ranges:
+            if unit in ('A', 'V'):
+                expected = 'above %g, %s' % (float(low), unit)
+            elif without_low == 'true':
+                expected = 'above %g, to %g %s' % (float(low), float(high), unit)
+            else:
+                expected = '%g to %g %s' % (float(low), float(high), unit)
+            self.assertEqual(rows[name], expected, name)
+
+    def testReservedNamesAreThoseOfTheCode(self):
+        rows = {row[0]: row[3] for row in table(self.readme, '### An entry of the scan list')}
+        self.assertEqual(re.findall(r'`(\w+)`', rows['name'] + '`')[1:], self.listed('RESERVED_NAMES'))
+
+    def testTopicsAreThoseOfTheCode(self):
+        ros = code('src/ros/*.cpp')
+        found = set()
+        for kind, name in re.findall(r'node\.advertise<(\w+)>\(\s*(?:inverter\.name \+ )?"/?(\w+)"', ros):
+            found.add((name, 'published', 'inverter_bus/' + kind))
+        for kind, name in re.findall(r'subscribe<([\w:]+)>\(\s*node, (?:name \+ )?"/?(\w+)"', ros):
+            found.add((name, 'subscribed', kind.replace('::', '/') if '::' in kind else 'inverter_bus/' + kind))
+        found.add(('diagnostics', 'published', 'diagnostic_msgs/DiagnosticArray'))
+        documented = {(name.split('/')[-1].lstrip('~'), direction.split(',')[0], kind)
+                      for name, direction, kind, _ in table(self.readme, '## Topics')}
+        self.assertEqual(documented, found)
+
+    def testServicesAreThoseOfTheCode(self):
+        services = code('src/ros/services.cpp')
+        found = set()
+        for kind, own, name in re.findall(r'advertise<([\w:]+)>\(\s*node, (name \+ )?"(\w+)"', services):
+            kind = kind.replace('::', '/') if '::' in kind else 'inverter_bus/' + kind
+            found.add(('~<inverter>/' + name if own else '~' + name, kind))
+        documented = {(name, kind) for name, kind, _, _ in table(self.readme, '## Services')}
+        self.assertEqual(documented, found)
+
+    def testBoundsOfServicesAreThoseOfTheCode(self):
+        bounds = members(read('include/inverter_bus/bus/bus.h'), 'ServiceBounds')
+        for name, _kind, bound, _ in table(self.readme, '## Services'):
+            service = name.split('/')[-1].lstrip('~')
+            if service != 'dump_trace':
+                self.assertEqual(bound, '%g s' % float(bounds[service][1]), name)
+
+    def testErrorIdsAreThoseOfMessageAndCode(self):
+        message = {name: int(value) for name, value in
+                   re.findall(r'^uint16 (ERROR_\w+)=(\d+)', read('msg', 'InverterStatus.msg'), re.MULTILINE)}
+        source = read('include/inverter_bus/bus/types.h') + read('include/inverter_bus/wire/request.h')
+        constants = {name: int(value, 16) for name, value in
+                     re.findall(r'constexpr std::uint16_t (ERROR_\w+) = (0x[0-9A-F]+);', source)}
+        documented = {name: int(value, 16) for value, name, _ in table(self.readme, '## Error ids') if name != '-'}
+        self.assertEqual(message, constants)
+        self.assertEqual(documented, constants)
+
+    def testTheFirstScanListUsesKnownKeys(self):
+        block = re.search(r'## A first scan list\n\n```yaml\n(.*?)```', self.readme, re.DOTALL).group(1)
+        parameters = yaml.safe_load(block)
+        self.assertLessEqual(set(parameters), set(self.listed('BUS_KEYS')))
+        for entry in parameters['scan_list'] + [parameters['defaults']]:
+            self.assertLessEqual(set(entry), set(['name', 'node'] + self.listed('sharedKeys')))
+
+    def testProfilesAreThoseOfTheRepository(self):
+        section = self.readme.split('\n## ')[0]
+        documented = re.findall(r'^\|[^|]+\| `(\w+)` \|', section, re.MULTILINE)
+        files = [os.path.splitext(os.path.basename(path))[0]
+                 for path in glob.glob(os.path.join(ROOT, 'config', 'drives', '*.yaml'))]
+        self.assertEqual(sorted(documented), sorted(files))
+
+
+class Documents(unittest.TestCase):
+    def testLinksLeadSomewhere(self):
+        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')):
+            text = read(path)
+            anchors = {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
+                       for heading in re.findall(r'^#+ (.*)$', text, re.MULTILINE)}
+            for target in re.findall(r'\]\(([^)]+)\)', text):
+                if target.startswith('http'):
+                    continue
+                name, _, anchor = target.partition('#')
+                if name:
+                    self.assertTrue(os.path.exists(os.path.join(os.path.dirname(path), name)), '%s: %s' % (path, target))
+                else:
+                    self.assertIn(anchor, anchors, '%s: %s' % (path, target))
+
+    def testThePictureShowsWhatItsSourceSays(self):
+        picture = read('docs', 'data_flow.svg')
+        words = re.sub(r'\s+', ' ', ' '.join(re.findall(r'<text[^>]*>([^<]*)</text>', picture)))
+        words = words.replace('&lt;', '<').replace('&gt;', '>').replace('&#160;', ' ').replace('&#45;', '-')
+        for label in re.findall(r'label="([^"]*)"', read('docs', 'data_flow.dot')):
+            for line in re.split(r'\\[nl]', label):
+                if line.strip():
+                    self.assertIn(' '.join(line.split()), ' '.join(words.split()))
+
+    def testKnownBitsFollowTheFieldsOfTheMessage(self):
+        message = read('msg', 'InverterStatus.msg')
+        bits = re.findall(r'^uint32 KNOWN_(\w+)=(\d+)', message, re.MULTILINE)
+        self.assertEqual([int(value) for _, value in bits], [1 << n for n in range(len(bits))])
+        fields = re.findall(r'^\w+ (\w+)$', message, re.MULTILINE)
+        positions = [fields.index(name.lower()) for name, _ in bits]
+        self.assertEqual(positions, sorted(positions))
+
+    def testSafetyRulesNameTestsThatExist(self):
+        tests = code('test/unit/*.cpp') + code('test/integration/*.py') + code('test/*.py') + code('test/peers/*.py')
+        for name in re.findall(r'`(\w+)\.(\w+)`', read('docs', 'safety_rules.md')):
+            suite, case = name
+            self.assertRegex(tests, r'(TEST(_F|_P)?\(%s, %s\)|class %s\b)' % (suite, case, suite), name)
+            self.assertRegex(tests, r'(TEST(_F|_P)?\(%s, %s\)|def %s\()' % (suite, case, case), name)
+
+    def testEveryRuleOfTheContractHasATest(self):
+        rules = [row[0] for row in table(read('docs', 'safety_rules.md'), '## The scheduler')]
+        self.assertEqual(rules, ['3.%d' % n for n in range(1, 15)])
+        rules = [row[0] for row in table(read('docs', 'safety_rules.md'), '## Safety')]
+        self.assertEqual(rules, ['4.%d' % n for n in range(1, 12)])
+        for heading in ('## The scheduler', '## Safety'):
+            for rule, _, tests in table(read('docs', 'safety_rules.md'), heading):
+                self.assertTrue(tests, 'rule %s has no test' % rule)
+
+    def testTheChangelogIsCatkins(self):
+        lines = read('CHANGELOG.rst').splitlines()
+        self.assertEqual(lines[1], 'Changelog for package inverter_bus')
+        self.assertEqual([set(lines[0]), set(lines[2])], [{'^'}, {'^'}])
+        self.assertEqual([len(lines[0]), len(lines[2])], [len(lines[1])] * 2)
+        self.assertIn('Forthcoming', lines)
+
+    def testLaunchFilesAndScanListsThatAreNamedExist(self):
+        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')):
+            for name in re.findall(r'(?<![\w/])(\w+\.launch)\b', read(path)):
+                self.assertTrue(os.path.exists(os.path.join(ROOT, 'launch', name)), '%s: %s' % (path, name))
+            for name in re.findall(r'\bconfig/([\w/]+\.yaml)', read(path)):
+                self.assertTrue(os.path.exists(os.path.join(ROOT, 'config', name)), '%s: %s' % (path, name))
+
+    def testTheScriptsExplainThemselves(self):
+        for script in ('scripts/test', 'scripts/demo'):
+            answer = subprocess.run(['bash', os.path.join(ROOT, script), '--help'], stdout=subprocess.PIPE,
+                                    universal_newlines=True, check=True)
+            self.assertIn(script, answer.stdout)
+            self.assertNotIn('#', answer.stdout)
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""`make install` into an empty directory: the installed tree runs by itself, with its own profiles and launch files."""
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+BUILD = os.environ.get('INVERTER_BUS_BUILD', os.path.join(ROOT, 'build', 'test'))
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
+class InstalledTree(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.prefix = tempfile.mkdtemp(prefix='inverter_bus_install_')
+        subprocess.run(['cmake', '--install', BUILD, '--prefix', cls.prefix], check=True, stdout=subprocess.DEVNULL)
+        cls.share = os.path.join(cls.prefix, 'share', 'inverter_bus')
+        cls.environment = {'PATH': '/usr/bin:/bin', 'HOME': cls.prefix, 'ROS_LOG_DIR': os.path.join(cls.prefix, 'log'),
+                           'ROS_MASTER_URI': 'http://127.0.0.1:%d' % free_port(), 'ROS_IP': '127.0.0.1'}
+        # A profile that only the installed tree has.
+        drives = os.path.join(cls.share, 'config', 'drives')
+        shutil.copy(os.path.join(drives, 'omron_mx2.yaml'), os.path.join(drives, 'only_here.yaml'))
+        cls.master = subprocess.Popen(['bash', '-c', cls.in_tree('exec rosmaster --core -p %s' %
+                                                                  cls.environment['ROS_MASTER_URI'].rsplit(':')[-1])],
+                                      env=cls.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.master.terminate()
+        cls.master.wait()
+        shutil.rmtree(cls.prefix)
+
+    @classmethod
+    def in_tree(cls, command):
+        noetic = '/opt/ros/noetic/setup.bash'
+        sources = ['source ' + noetic] if os.path.exists(noetic) else []
+        return ' && '.join(sources + ['source %s/setup.bash' % cls.prefix, command])
+
+    def run_in_tree(self, command):
+        return subprocess.run(['bash', '-c', self.in_tree(command)], env=self.environment, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, universal_newlines=True, timeout=60)
+
+    def testItHoldsLaunchFilesScanListsAndProfiles(self):
+        for folder in ('launch', 'config'):
+            for path, _, files in os.walk(os.path.join(ROOT, folder)):
+                for name in files:
+                    relative = os.path.relpath(os.path.join(path, name), ROOT)
+                    self.assertTrue(os.path.exists(os.path.join(self.share, relative)), relative)
+
+    def testItsProgramsAreFoundByRosrun(self):
+        answer = self.run_in_tree('rosrun inverter_bus check_profile %s/config/drives/only_here.yaml' % self.share)
+        self.assertEqual(answer.returncode, 0, answer.stdout)
+        answer = self.run_in_tree('rosrun inverter_bus check_profile /no/such/file.yaml')
+        self.assertNotEqual(answer.returncode, 0)
+
+    def testItsLaunchFilesAreComplete(self):
+        for name in sorted(os.listdir(os.path.join(self.share, 'launch'))):
+            answer = self.run_in_tree('roslaunch --nodes inverter_bus ' + name)
+            self.assertEqual(answer.returncode, 0, answer.stdout)
+
+    def node(self, drive):
+        self.run_in_tree('until rosparam list; do sleep 0.1; done')
+        self.run_in_tree('rosparam set /installed "{port: %s/no_port, trace_directory: %s, scan_list: '
+                         '[{name: belt, node: 1, drive: %s}]}"' % (self.prefix, self.prefix, drive))
+        return subprocess.Popen(['bash', '-c', self.in_tree('exec rosrun inverter_bus inverter_bus_node '
+                                                            '__name:=installed')],
+                                env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                universal_newlines=True)
+
+    def testAWrongConfigurationEndsTheNode(self):
+        process = self.node('no_such_drive')
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 1, output)
+        self.assertIn('no_such_drive', output)
+
+    def testItsOwnProfilesAreUsed(self):
+        process = self.node('only_here')
+        answer = None
+        deadline = time.monotonic() + 30.0
+        while time.monotonic() < deadline and process.poll() is None:
+            answer = self.run_in_tree('timeout 20 rostopic echo -n 1 /installed/belt/status/drive')
+            if answer.returncode == 0:
+                break
+        process.terminate()
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, output)
+        self.assertIn('only_here', answer.stdout)
+
+
+if __name__ == '__main__':
+    unittest.main()

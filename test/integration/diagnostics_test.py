@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""/diagnostics: an entry per inverter and one for the bus, with levels and words that say what to do."""
+import unittest
+
+import rostest
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from harness import Bench, belts, init, wait_for
+
+SAFE = {'C076': 4, 'C077': 2.0}  # on communication loss: decelerate after 2 s
+
+
+class Diagnostics(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.bench = Bench(belts(3), simulation={'belt_1': {'parameters': SAFE},
+                                                'belt_2': {'parameters': {'C076': 2, 'C077': 0.0}},
+                                                'belt_3': {'parameters': dict(SAFE, A002=2)}})
+        cls.bench.start_driver()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.bench.close()
+
+    def wait_level(self, name, level, *words):
+        def seen():
+            status = self.bench.diagnostics.get(name)
+            text = text_of(status) if status else ''
+            return status and status.level == level and all(word in text for word in words)
+
+        return wait_for(seen, lambda: '%s at level %d with %s; it is %s' % (name, level, words,
+                                                                            self.bench.diagnostics.get(name)))
+
+    def testADriveThatIsSetUpWellIsOk(self):
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def testADriveThatWouldRunOnWithoutCommunicationWarns(self):
+        self.wait_level('belt_2', DiagnosticStatus.WARN, 'C077')
+
+    def testADriveThatIsNotCommandedByTheBusWarnsWithTheValueToSet(self):
+        self.wait_level('belt_3', DiagnosticStatus.WARN, 'not commanded by the bus', 'A002', '3')
+
+    def testEachHasItsOwnHardwareId(self):
+        for name in ('belt_1', 'belt_2', 'bus'):
+            wait_for(lambda: name in self.bench.diagnostics, 'an entry of ' + name)
+        ids = [self.bench.diagnostics[name].hardware_id for name in ('belt_1', 'belt_2', 'bus')]
+        self.assertTrue(all(ids), ids)
+
+    def testATripIsAnErrorWithItsText(self):
+        self.bench.simulate('belt_1 trip 5')
+        try:
+            self.wait_level('belt_1', DiagnosticStatus.ERROR, self.bench['belt_1'].wait(
+                lambda s: s.faulted, 'tripped').fault_text)
+        finally:
+            self.bench['belt_1'].reset()
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def testAnOfflineInverterIsAnError(self):
+        self.bench.simulate('belt_1 offline')
+        self.wait_level('belt_1', DiagnosticStatus.ERROR)
+        self.bench.simulate('belt_1 online')
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def testDiagnosticsGoOnWhenThePortIsGone(self):
+        self.bench.simulate('bus unplug')
+        try:
+            self.wait_level('bus', DiagnosticStatus.ERROR)
+            self.bench.diagnostics.clear()
+            self.wait_level('bus', DiagnosticStatus.ERROR)
+        finally:
+            self.bench.simulate('bus plug')
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def testASecondMasterWarns(self):
+        self.bench.simulate('bus foreign 01 03 00 00 00 02')
+        self.wait_level('bus', DiagnosticStatus.WARN, 'master')
+
+
+def text_of(status):
+    return ' '.join([status.message] + [value.key + ' ' + value.value for value in status.values])
+
+
+if __name__ == '__main__':
+    init('diagnostics_test')
+    rostest.rosrun('inverter_bus', 'diagnostics', Diagnostics)
+    rospy.signal_shutdown('done')

@@ -1,0 +1,21 @@
+#!/usr/bin/env python3
+"""Sends one velocity to a topic from a node of its own and ends: velocity_once.py TOPIC VALUE [latched]"""
+import sys
+import time
+
+import rospy
+from std_msgs.msg import Float64
+
+rospy.init_node('velocity_once', anonymous=True, disable_signals=True)
+publisher = rospy.Publisher(sys.argv[1], Float64, queue_size=1, latch='latched' in sys.argv[3:])
+deadline = time.monotonic() + 20.0
+while publisher.get_num_connections() == 0:
+    if time.monotonic() > deadline:
+        sys.exit('nobody listens to ' + sys.argv[1])
+    time.sleep(0.01)
+publisher.publish(Float64(float(sys.argv[2])))
+if 'stay' in sys.argv[3:]:
+    rospy.spin()
+# The message leaves in a thread of rospy's own; ending at once would lose it.
+time.sleep(0.5)
+rospy.signal_shutdown('sent')

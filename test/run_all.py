@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+"""Runs every test of a build and counts the cases; scripts/test calls it.
+
+Prints a line per test program, the failed cases with the end of their output, and `N passed, N failed` at the end. A
+program that crashes, hangs or leaves no result counts as a failure.
+"""
+import argparse
+import concurrent.futures
+import glob
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+
+class Program:
+    """One test program: how to run it and how to count its cases."""
+
+    def __init__(self, kind, name, command, time_limit=300.0, results=None, environment=None):
+        self.kind = kind
+        self.name = name
+        self.command = command
+        self.time_limit = time_limit
+        self.results = results  # directory of JUnit files; None: a Python unittest or a single check
+        self.environment = environment or {}
+
+
+class Outcome:
+    def __init__(self):
+        self.passed = 0
+        self.failed = []
+        self.skipped = []
+        self.seconds = 0.0
+        self.output = ''
+
+
+def run(program, logs):
+    """Runs one program in a process group of its own, which does not survive it."""
+    outcome = Outcome()
+    environment = dict(os.environ, **program.environment)
+    if program.results:
+        shutil.rmtree(program.results, ignore_errors=True)
+        os.makedirs(program.results)
+    log = os.path.join(logs, '%s_%s.log' % (program.kind, program.name))
+    start = time.monotonic()
+    with open(log, 'w') as stream:
+        process = subprocess.Popen(program.command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=stream,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            status = process.wait(program.time_limit)
+        except subprocess.TimeoutExpired:
+            status = 'over %.0f s' % program.time_limit
+        except BaseException:
+            end_group(process)
+            raise
+        end_group(process)
+    outcome.seconds = time.monotonic() - start
+    with open(log, errors='replace') as stream:
+        outcome.output = stream.read()
+    count(program, status, outcome)
+    return outcome
+
+
+def end_group(process):
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            os.killpg(process.pid, number)
+            process.wait(5.0)
+        except (ProcessLookupError, subprocess.TimeoutExpired):
+            pass
+
+
+def count(program, status, outcome):
+    if program.results:
+        count_junit(program, outcome)
+    elif re.search(r'^Ran \d+ tests? in', outcome.output, re.MULTILINE):
+        count_unittest(outcome)
+    elif status == 0:
+        outcome.passed = 1
+    if status != 0 and not outcome.failed:
+        outcome.failed.append('%s (exit status %s)' % (program.name, status))
+    if status == 0 and not outcome.passed and not outcome.failed and not outcome.skipped:
+        outcome.failed.append('%s (ran no test)' % program.name)
+
+
+def count_junit(program, outcome):
+    """Cases of gtest's and rosunit's result files. rostest's own summary repeats them, but knows of crashed nodes."""
+    for path in sorted(glob.glob(os.path.join(program.results, '**', '*.xml'), recursive=True)):
+        if os.path.basename(path).startswith('rostest-'):
+            continue
+        try:
+            tree = xml.etree.ElementTree.parse(path)
+        except xml.etree.ElementTree.ParseError:
+            outcome.failed.append('%s (unreadable results)' % program.name)
+            continue
+        for case in tree.iter('testcase'):
+            if case.get('status') == 'notrun':
+                continue
+            name = '%s.%s' % (case.get('classname', '').split('.')[-1], case.get('name'))
+            if case.find('failure') is not None or case.find('error') is not None:
+                outcome.failed.append(name)
+            else:
+                outcome.passed += 1
+
+
+def count_unittest(outcome):
+    total = int(re.search(r'^Ran (\d+) tests? in', outcome.output, re.MULTILINE).group(1))
+    outcome.failed = re.findall(r'^(?:FAIL|ERROR): (\S+)', outcome.output, re.MULTILINE)
+    outcome.skipped = re.findall(r"\.\.\. skipped ['\"](.*)['\"]$", outcome.output, re.MULTILINE)
+    outcome.passed = max(0, total - len(outcome.failed) - len(outcome.skipped))
+
+
+def report(program, outcome):
+    words = ['%d passed' % outcome.passed]
+    if outcome.failed:
+        words.append('%d failed' % len(outcome.failed))
+    words += ['not run: ' + reason for reason in outcome.skipped]
+    print('%-6s %-8s %-36s %7.1f s   %s' % ('FAILED' if outcome.failed else 'ok', program.kind, program.name,
+                                            outcome.seconds, ', '.join(words)), flush=True)
+    if outcome.failed:
+        for name in outcome.failed:
+            print('         failed: %s' % name)
+        for line in outcome.output.splitlines()[-60:]:
+            print('         | %s' % line)
+
+
+def unit_programs(build):
+    for path in sorted(glob.glob(os.path.join(build, 'devel', 'lib', 'inverter_bus', '*_test'))):
+        name = os.path.basename(path)
+        results = os.path.join(build, 'results', name)
+        yield Program('unit', name, [path, '--gtest_output=xml:%s/%s.xml' % (results, name)], results=results)
+
+
+def ros_programs(build):
+    for path in sorted(glob.glob(os.path.join(ROOT, 'test', 'integration', '*.test'))):
+        name = os.path.splitext(os.path.basename(path))[0]
+        results = os.path.join(build, 'results', 'rostest_' + name)
+        home = os.path.join(results, 'home')
+        yield Program('ros', name, ['rostest', path], time_limit=420.0, results=results,
+                      environment={'ROS_TEST_RESULTS_DIR': results, 'ROS_HOME': home, 'ROS_IP': '127.0.0.1'})
+
+
+def lint_programs(build):
+    sources = [path for pattern in ('include/**/*.h', 'src/**/*.h', 'src/**/*.cpp', 'test/**/*.h', 'test/**/*.cpp',
+                                    'benchmark/**/*.cpp')
+               for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True))]
+    # Other versions format a little differently.
+    if shutil.which('clang-format-14'):
+        yield Program('lint', 'clang_format', ['clang-format-14', '--dry-run', '-Werror'] + sources)
+    if shutil.which('catkin_lint'):
+        # It doesn't see targets that a function defines; scripts/ and test/ belong to developers; the two about
+        # directories mean catkin's own include directory, which is marked SYSTEM.
+        ignored = ['undefined_target', 'uninstalled_script', 'external_directory', 'external_interface_path']
+        yield Program('lint', 'catkin_lint', ['catkin_lint', '--offline', '--strict', '-W1'] +
+                      [word for name in ignored for word in ('--ignore', name)] + [ROOT])
+    if shutil.which('shellcheck'):
+        scripts = ['scripts/test', 'scripts/demo', 'scripts/install_dependencies', 'scripts/common.sh', '.ci/run']
+        yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
+    yield python_program('lint', 'test/documentation_test.py', build)
+
+
+def python_program(kind, path, build, time_limit=120.0):
+    name = os.path.splitext(os.path.basename(path))[0]
+    return Program(kind, name, [sys.executable, os.path.join(ROOT, path), '-v'], time_limit,
+                   environment={'INVERTER_BUS_BUILD': build})
+
+
+def other_programs(build):
+    yield python_program('install', 'test/install_test.py', build)
+    for path in sorted(glob.glob(os.path.join(ROOT, 'test', 'peers', '*_test.py'))):
+        yield python_program('peer', os.path.relpath(path, ROOT), build, 180.0)
+    yield Program('demo', 'demo_once', ['bash', os.path.join(ROOT, 'scripts', 'demo'), '--once', '--build', build],
+                  time_limit=420.0)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--build', required=True)
+    parser.add_argument('--only', choices=['unit', 'ros', 'lint'])
+    parser.add_argument('--match', default='')
+    parser.add_argument('--sanitize', choices=['address', 'thread'])
+    arguments = parser.parse_args()
+    build = os.path.abspath(arguments.build)
+
+    groups = {'lint': lint_programs, 'unit': unit_programs, 'ros': ros_programs, 'other': other_programs}
+    if arguments.only:
+        groups = {arguments.only: groups[arguments.only]}
+    elif arguments.sanitize:
+        groups = {'unit': unit_programs, 'ros': ros_programs}
+        os.environ['ASAN_OPTIONS'] = 'detect_leaks=0'
+        os.environ['UBSAN_OPTIONS'] = 'halt_on_error=1:print_stacktrace=1'
+        os.environ['TSAN_OPTIONS'] = 'suppressions=' + os.path.join(ROOT, 'test', 'thread_sanitizer.supp')
+
+    logs = os.path.join(build, 'test_logs')
+    os.makedirs(logs, exist_ok=True)
+    passed, failed, start = 0, 0, time.monotonic()
+    for group, programs in groups.items():
+        chosen = [program for program in programs(build) if arguments.match in program.name]
+        # Whole nodes on a simulated line keep real time: one at a time.
+        workers = os.cpu_count() or 1 if group in ('unit', 'lint') else 1
+        with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+            for program, outcome in zip(chosen, pool.map(lambda program: run(program, logs), chosen)):
+                report(program, outcome)
+                passed += outcome.passed
+                failed += len(outcome.failed)
+    print('All of it took %.0f s; the output of each program is in %s' % (time.monotonic() - start, logs))
+    print('%d passed, %d failed' % (passed, failed))
+    return 0 if failed == 0 and passed > 0 else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "inverter_bus/bus/configuration.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The profiles as shipped; CMake tells where.
+const std::string PROFILES = std::string(INVERTER_BUS_ROOT) + "/config/drives";
+
+/// A scan list file that is gone after the test.
+class ScanListFile
+{
+public:
+  explicit ScanListFile(const std::string& text)
+    : path_(testing::TempDir() + "bus_configuration_test_" + std::to_string(getpid()) + ".yaml")
+  {
+    std::ofstream(path_) << text;
+  }
+  ~ScanListFile()
+  {
+    std::remove(path_.c_str());
+  }
+  const std::string& path() const
+  {
+    return path_;
+  }
+
+private:
+  std::string path_;
+};
+
+Configuration read(const std::string& text)
+{
+  const ScanListFile file(text);
+  return readConfiguration(readYamlFile(file.path()), "~", PROFILES);
+}
+
+/// The message that \p text is refused with; empty: it was accepted.
+std::string refusal(const std::string& text)
+{
+  try
+  {
+    read(text);
+  }
+  catch (const drive::ConfigurationError& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string ONE = "scan_list: [{name: belt, node: 1, drive: omron_mx2}]\n";
+
+/// A scan list of one MX2 with \p more in its entry.
+std::string entry(const std::string& more)
+{
+  return "scan_list: [{name: belt, node: 1, drive: omron_mx2, " + more + "}]\n";
+}
+
+TEST(ConfigurationTest, defaultsAreThoseOfTheContract)
+{
+  const Configuration configuration = read(ONE);
+  const BusConfig& bus = configuration.bus;
+  EXPECT_EQ("/dev/ttyUSB0", bus.port);
+  EXPECT_EQ(19200U, bus.serial.baud_rate);
+  EXPECT_EQ(wire::Parity::None, bus.serial.parity);
+  EXPECT_EQ(8U, bus.serial.data_bits);
+  EXPECT_EQ(1U, bus.serial.stop_bits);
+  EXPECT_EQ(wire::Rs485::Auto, bus.serial.rs485);
+  EXPECT_DOUBLE_EQ(0.0, bus.interval);
+  EXPECT_DOUBLE_EQ(0.1, bus.response_timeout);
+  EXPECT_EQ(1, bus.retries);
+  EXPECT_EQ(3, bus.offline_after);
+  EXPECT_TRUE(bus.exclusive);
+  EXPECT_TRUE(bus.serial.exclusive);
+  EXPECT_EQ(0, bus.realtime_priority);
+  EXPECT_EQ(1, bus.idle_divisor);
+  EXPECT_FALSE(bus.parameters_read_only);
+  EXPECT_EQ("~/.ros/inverter_bus", bus.trace_directory);
+  ASSERT_EQ(1U, bus.inverters.size());
+  EXPECT_DOUBLE_EQ(1.0, bus.inverters[0].hz_per_unit);
+  EXPECT_DOUBLE_EQ(0.0, bus.inverters[0].min_velocity);
+  EXPECT_DOUBLE_EQ(0.5, bus.inverters[0].command_timeout);
+  EXPECT_FALSE(bus.inverters[0].stop_unexpected_motion);
+  EXPECT_FALSE(bus.inverters[0].release_on_exit);
+  EXPECT_FALSE(bus.inverters[0].configure_block);
+  EXPECT_EQ((std::vector<int>{ 1, 2, 3, 4, 14 }), bus.inverters[0].block_read);
+}
+
+TEST(ConfigurationTest, allKeysOfTheBusAreRead)
+{
+  const BusConfig bus = read(
+                            "port: /dev/ttyS3\nprotocol: modbus_rtu\nbaud_rate: 9600\nparity: even\ndata_bits: 8\n"
+                            "stop_bits: 1\nrs485: rts_low\ninterval: 2\nresponse_timeout: 0.25\nretries: 0\n"
+                            "offline_after: 5\nexclusive: false\nrealtime_priority: 10\nidle_divisor: 4\n"
+                            "parameter_access: read_only\ntrace_directory: /tmp/traces\nsimulation: {seed: 1}\n" +
+                            ONE)
+                            .bus;
+  EXPECT_EQ("/dev/ttyS3", bus.port);
+  EXPECT_EQ("/dev/ttyS3", bus.serial.device);
+  EXPECT_EQ(9600U, bus.serial.baud_rate);
+  EXPECT_EQ(wire::Parity::Even, bus.serial.parity);
+  EXPECT_EQ(wire::Rs485::RtsLow, bus.serial.rs485);
+  EXPECT_DOUBLE_EQ(2.0, bus.interval);
+  EXPECT_DOUBLE_EQ(0.25, bus.response_timeout);
+  EXPECT_EQ(0, bus.retries);
+  EXPECT_EQ(5, bus.offline_after);
+  EXPECT_FALSE(bus.serial.exclusive);
+  EXPECT_EQ(10, bus.realtime_priority);
+  EXPECT_EQ(4, bus.idle_divisor);
+  EXPECT_TRUE(bus.parameters_read_only);
+  EXPECT_EQ("/tmp/traces", bus.trace_directory);
+}
+
+TEST(ConfigurationTest, invertersComeInNodeOrderWithTheirDrives)
+{
+  const Configuration configuration = read(
+      "scan_list:\n"
+      "  - {name: last, node: 9, drive: omron_rx}\n"
+      "  - {name: first, node: 2, drive: omron_mx2}\n");
+  ASSERT_EQ(2U, configuration.bus.inverters.size());
+  ASSERT_EQ(2U, configuration.drives.size());
+  EXPECT_EQ("first", configuration.bus.inverters[0].name);
+  EXPECT_EQ("omron_mx2", configuration.drives[0].profile().name);
+  EXPECT_EQ(9, configuration.bus.inverters[1].node);
+  EXPECT_EQ("omron_rx", configuration.drives[1].profile().name);
+}
+
+TEST(ConfigurationTest, anEntryGoesBeforeTheDefaults)
+{
+  const BusConfig bus = read(
+                            "defaults: {drive: omron_mx2, command_timeout: 1, hz_per_unit: 2.0}\n"
+                            "scan_list: [{name: a, node: 1}, {name: b, node: 2, command_timeout: 0.0}]\n")
+                            .bus;
+  EXPECT_DOUBLE_EQ(1.0, bus.inverters[0].command_timeout);
+  EXPECT_DOUBLE_EQ(0.0, bus.inverters[1].command_timeout);
+  EXPECT_DOUBLE_EQ(2.0, bus.inverters[1].hz_per_unit);
+}
+
+TEST(ConfigurationTest, theResponseTimeoutOfTheEntryGoesBeforeDefaultsAndBus)
+{
+  const std::string bus = "response_timeout: 0.3\n";
+  const std::string defaults = "defaults: {response_timeout: 0.2}\n";
+  EXPECT_DOUBLE_EQ(0.3, read(bus + ONE).bus.inverters[0].response_timeout);
+  EXPECT_DOUBLE_EQ(0.2, read(bus + defaults + ONE).bus.inverters[0].response_timeout);
+  EXPECT_DOUBLE_EQ(0.4, read(bus + defaults + entry("response_timeout: 0.4")).bus.inverters[0].response_timeout);
+}
+
+TEST(ConfigurationTest, theMaximumVelocityIsThatOfTheDrive)
+{
+  const Configuration configuration = read(entry("hz_per_unit: -4.0"));
+  const double maximum = configuration.drives[0].profile().maximum_frequency;
+  EXPECT_DOUBLE_EQ(maximum / 4.0, configuration.bus.inverters[0].max_velocity);
+  // Written by hand, the same maximum must not fail by rounding.
+  EXPECT_EQ("", refusal(entry("hz_per_unit: 0.3, max_velocity: " + std::to_string(maximum / 0.3))));
+}
+
+struct Mask
+{
+  std::string text;
+  std::vector<int> nodes;
+};
+
+class MaskTest : public testing::TestWithParam<Mask>
+{
+};
+
+TEST_P(MaskTest, namesItsStations)
+{
+  const BusConfig bus = read("defaults: {drive: omron_mx2}\nscan_list: " + GetParam().text + "\n").bus;
+  ASSERT_EQ(GetParam().nodes.size(), bus.inverters.size());
+  for (std::size_t i = 0; i < bus.inverters.size(); ++i)
+  {
+    EXPECT_EQ(GetParam().nodes[i], bus.inverters[i].node);
+    EXPECT_EQ("inverter_" + std::to_string(GetParam().nodes[i]), bus.inverters[i].name);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, MaskTest,
+                         testing::Values(Mask{ "2", { 1 } }, Mask{ "7", { 1, 2 } }, Mask{ "-2147483646", { 1, 31 } },
+                                         Mask{ "2147483650", { 1, 31 } }, Mask{ "0x80000002", { 1, 31 } },
+                                         Mask{ "'0x80000002'", { 1, 31 } }, Mask{ "'#80000002'", { 1, 31 } },
+                                         Mask{ "'#0000000A'", { 1, 3 } }));
+
+/// A wrong configuration and what the message must name.
+struct Wrong
+{
+  std::string name;
+  std::string text;
+  std::vector<std::string> parts;
+};
+
+class RefusalTest : public testing::TestWithParam<Wrong>
+{
+};
+
+TEST_P(RefusalTest, namesKeyValuePlaceAndWhatIsAllowed)
+{
+  const std::string message = refusal(GetParam().text);
+  ASSERT_NE("", message) << "was accepted";
+  EXPECT_EQ(std::string::npos, message.find('\n')) << message;
+  for (const std::string& part : GetParam().parts)
+  {
+    EXPECT_THAT(message, HasSubstr(part));
+  }
+}
+
+const std::string ALLOWED = "allowed:";
+const std::string BELT = "~scan_list[0] (belt)";
+
+INSTANTIATE_TEST_SUITE_P(
+    Bus, RefusalTest,
+    testing::Values(
+        Wrong{ "unknownKey", "baudrate: 9600\n" + ONE, { "~:", "'baudrate'", "9600", "baud_rate", ALLOWED } },
+        Wrong{ "emptyPort", "port: ''\n" + ONE, { "'port'", "''", ALLOWED } },
+        Wrong{ "relativePort", "port: ttyUSB0\n" + ONE, { "'port'", "'ttyUSB0'", ALLOWED } },
+        Wrong{ "gatewayPort", "port: tcp://gateway\n" + ONE, { "'port'", "tcp://gateway", "serial ports", ALLOWED } },
+        Wrong{ "tunnelPort", "port: rtu+tcp://a:1\n" + ONE, { "'port'", "serial ports", ALLOWED } },
+        Wrong{ "compowayF", "protocol: compoway_f\n" + ONE, { "'protocol'", "compoway_f", "allowed: modbus_rtu" } },
+        Wrong{ "unknownProtocol", "protocol: modbus\n" + ONE, { "'protocol'", "'modbus'", "allowed: modbus_rtu" } },
+        Wrong{ "unknownBaudRate", "baud_rate: 19201\n" + ONE, { "'baud_rate'", "19201", "19200", ALLOWED } },
+        Wrong{ "baudRateText", "baud_rate: '9600'\n" + ONE, { "'baud_rate'", "'9600'", ALLOWED } },
+        Wrong{ "baudRateOfNoDrive", "baud_rate: 300\n" + ONE, { "'baud_rate'", "300", "belt", "omron_mx2", ALLOWED } },
+        Wrong{ "unknownParity", "parity: mark\n" + ONE, { "'parity'", "'mark'", "none, even, odd" } },
+        Wrong{ "sevenBits", "data_bits: 7\n" + ONE, { "'data_bits'", "7", "modbus_rtu", "allowed: 8" } },
+        Wrong{ "fiveBits", "data_bits: 5\n" + ONE, { "'data_bits'", "5", "7, 8" } },
+        Wrong{ "threeStopBits", "stop_bits: 3\n" + ONE, { "'stop_bits'", "3", "1, 2" } },
+        Wrong{ "unknownRs485", "rs485: rts\n" + ONE, { "'rs485'", "'rts'", "auto, kernel, rts_high, rts_low" } },
+        Wrong{ "negativeInterval", "interval: -0.1\n" + ONE, { "'interval'", "-0.1", "from 0 to 655.35 s" } },
+        Wrong{ "longInterval", "interval: 655.36\n" + ONE, { "'interval'", "655.36", "from 0 to 655.35 s" } },
+        Wrong{ "intervalText", "interval: fast\n" + ONE, { "'interval'", "'fast'", ALLOWED } },
+        Wrong{ "intervalTruth", "interval: true\n" + ONE, { "'interval'", "true", "no number", ALLOWED } },
+        Wrong{ "intervalNotANumber", "interval: .nan\n" + ONE, { "'interval'", "nan", "not finite", ALLOWED } },
+        Wrong{ "intervalInfinite", "interval: .inf\n" + ONE, { "'interval'", "inf", "not finite", ALLOWED } },
+        Wrong{ "noResponseTimeout", "response_timeout: 0\n" + ONE, { "'response_timeout'", "= 0", "above 0", "10 s" } },
+        Wrong{ "longResponseTimeout", "response_timeout: 10.5\n" + ONE, { "'response_timeout'", "10.5", "10 s" } },
+        Wrong{ "negativeRetries", "retries: -1\n" + ONE, { "'retries'", "-1", "from 0 to 10" } },
+        Wrong{ "manyRetries", "retries: 11\n" + ONE, { "'retries'", "11", "from 0 to 10" } },
+        Wrong{ "brokenRetries", "retries: 1.5\n" + ONE, { "'retries'", "1.5", "whole number", "from 0 to 10" } },
+        Wrong{ "offlineAfterNothing", "offline_after: 0\n" + ONE, { "'offline_after'", "0", "from 1 to 100" } },
+        Wrong{ "exclusiveNumber", "exclusive: 1\n" + ONE, { "'exclusive'", "1", "true, false" } },
+        Wrong{ "highPriority", "realtime_priority: 100\n" + ONE, { "'realtime_priority'", "100", "from 0 to 99" } },
+        Wrong{ "idleDivisorZero", "idle_divisor: 0\n" + ONE, { "'idle_divisor'", "0", "from 1 to 1000" } },
+        Wrong{ "parameterAccess", "parameter_access: none\n" + ONE, { "'parameter_access'", "read_write, read_only" } },
+        Wrong{ "traceDirectoryNumber", "trace_directory: 5\n" + ONE, { "'trace_directory'", "5", ALLOWED } }),
+    [](const testing::TestParamInfo<Wrong>& info) { return info.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    ScanList, RefusalTest,
+    testing::Values(
+        Wrong{ "missingList", "port: /dev/ttyS0\n", { "~:", "'scan_list' is missing", ALLOWED } },
+        Wrong{ "emptyList", "scan_list: []\n", { "'scan_list'", "is empty", ALLOWED } },
+        Wrong{ "listMap", "scan_list: {belt: {node: 1}}\n", { "'scan_list'", "neither", ALLOWED } },
+        Wrong{ "listOfNumbers", "scan_list: [1, 2]\n", { "~scan_list[0]", "1", "no map", ALLOWED } },
+        Wrong{ "emptyMask", "scan_list: 0\n", { "'scan_list'", "= 0", "no station", ALLOWED } },
+        Wrong{ "maskOfBitZero", "scan_list: '#00000001'\n", { "'scan_list'", "#00000001", "no station", ALLOWED } },
+        Wrong{ "longMask", "scan_list: 4294967296\n", { "'scan_list'", "4294967296", "32 bits", ALLOWED } },
+        Wrong{ "longTextMask", "scan_list: '0x100000002'\n", { "'scan_list'", "0x100000002", ALLOWED } },
+        Wrong{ "wordMask", "scan_list: all\n", { "'scan_list'", "'all'", ALLOWED } },
+        Wrong{ "maskWithoutDrive", "scan_list: 2\n", { "'drive' is missing", "station 1", ALLOWED } },
+        Wrong{ "defaultsList", "defaults: [1]\n" + ONE, { "~defaults", "[1]", "no map", ALLOWED } },
+        Wrong{ "defaultsName", "defaults: {name: x}\n" + ONE, { "~defaults", "'name'", "'x'", ALLOWED } },
+        Wrong{ "defaultsNode", "defaults: {node: 1}\n" + ONE, { "~defaults", "'node'", ALLOWED } },
+        Wrong{ "badDefault",
+               "defaults: {command_timeout: -1}\n" + ONE,
+               { "~defaults", "'command_timeout'", "-1", ALLOWED } },
+        Wrong{ "unknownEntryKey", entry("nod: 2"), { BELT, "'nod'", "2", ALLOWED } },
+        Wrong{ "missingName",
+               "scan_list: [{node: 1, drive: omron_mx2}]\n",
+               { "~scan_list[0]", "'name' is missing", ALLOWED } },
+        Wrong{ "missingNode", "scan_list: [{name: belt, drive: omron_mx2}]\n", { BELT, "'node' is missing", ALLOWED } },
+        Wrong{ "missingDrive", "scan_list: [{name: belt, node: 1}]\n", { BELT, "'drive' is missing", ALLOWED } },
+        Wrong{ "duplicateName",
+               "defaults: {drive: omron_mx2}\nscan_list: [{name: a, node: 1}, {name: a, node: 2}]\n",
+               { "~scan_list[1] (a)", "'name'", "'a'", "twice", ALLOWED } },
+        Wrong{ "duplicateNode",
+               "defaults: {drive: omron_mx2}\nscan_list: [{name: a, node: 1}, {name: b, node: 1}]\n",
+               { "~scan_list[1] (b)", "'node'", "1", "a has it too", ALLOWED } }),
+    [](const testing::TestParamInfo<Wrong>& info) { return info.param.name; });
+
+std::string named(const std::string& name)
+{
+  return "scan_list: [{name: " + name + ", node: 1, drive: omron_mx2}]\n";
+}
+
+std::string numbered(const std::string& node)
+{
+  return "scan_list: [{name: belt, node: " + node + ", drive: omron_mx2}]\n";
+}
+
+std::string driven(const std::string& drive)
+{
+  return "scan_list: [{name: belt, node: 1, drive: " + drive + "}]\n";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Entry, RefusalTest,
+    testing::Values(
+        Wrong{ "emptyName", named("''"), { "'name'", "''", ALLOWED } },
+        Wrong{ "numericName", named("5"), { "'name'", "5", ALLOWED } },
+        Wrong{ "nameWithDigitFirst", named("1belt"), { "'name'", "'1belt'", "ROS name", ALLOWED } },
+        Wrong{ "nameWithHyphen", named("belt-1"), { "'name'", "'belt-1'", "ROS name", ALLOWED } },
+        Wrong{ "nameWithSlash", named("a/b"), { "'name'", "'a/b'", "ROS name", ALLOWED } },
+        Wrong{ "nameWithNewline", named("\"a\\nb\""), { "'name'", "'a b'", "ROS name", ALLOWED } },
+        Wrong{ "reservedBus", named("bus"), { "'name'", "'bus'", "reserved", ALLOWED } },
+        Wrong{ "reservedCommand", named("command"), { "'name'", "'command'", "reserved", ALLOWED } },
+        Wrong{ "reservedStop", named("stop"), { "'name'", "'stop'", "reserved", ALLOWED } },
+        Wrong{ "reservedBusStatus", named("bus_status"), { "'name'", "'bus_status'", "reserved", ALLOWED } },
+        Wrong{ "reservedDumpTrace", named("dump_trace"), { "'name'", "'dump_trace'", "reserved", ALLOWED } },
+        Wrong{ "nodeZero", numbered("0"), { BELT, "'node'", "= 0", "from 1 to" } },
+        Wrong{ "nodeBeyond", numbered("248"), { BELT, "'node'", "248", "to 247" } },
+        Wrong{ "nodeText", numbered("one"), { BELT, "'node'", "'one'", "whole number" } },
+        Wrong{ "nodeBroken", numbered("1.0"), { BELT, "'node'", "whole number" } },
+        Wrong{ "unknownDrive", driven("omron_mx3"), { BELT, "'drive'", "'omron_mx3'", "omron_mx2", ALLOWED } },
+        Wrong{ "driveOutside", driven("../drives/omron_mx2"), { BELT, "'drive'", "../drives/omron_mx2", ALLOWED } },
+        Wrong{ "missingProfile", driven("/nonexistent.yaml"), { BELT, "'drive'", "/nonexistent.yaml" } },
+        Wrong{ "hzPerUnitZero", entry("hz_per_unit: 0"), { BELT, "'hz_per_unit'", "= 0", "never 0" } },
+        Wrong{ "hzPerUnitZeroFloat", entry("hz_per_unit: -0.0"), { BELT, "'hz_per_unit'", "never 0" } },
+        Wrong{ "hzPerUnitText", entry("hz_per_unit: one"), { BELT, "'hz_per_unit'", "'one'", ALLOWED } },
+        Wrong{ "hzPerUnitNotANumber", entry("hz_per_unit: .nan"), { BELT, "'hz_per_unit'", "nan", ALLOWED } },
+        Wrong{
+            "fastVelocity", entry("max_velocity: 100001"), { BELT, "'max_velocity'", "100001", "maximum", ALLOWED } },
+        Wrong{ "negativeVelocity", entry("max_velocity: -1"), { BELT, "'max_velocity'", "-1", ALLOWED } },
+        Wrong{
+            "minimumAboveMaximum", entry("max_velocity: 5, min_velocity: 6"), { BELT, "'min_velocity'", "6", "to 5" } },
+        Wrong{
+            "negativeCommandTimeout", entry("command_timeout: -0.5"), { BELT, "'command_timeout'", "-0.5", ALLOWED } },
+        Wrong{ "noEntryTimeout", entry("response_timeout: 0.0"), { BELT, "'response_timeout'", "above 0" } },
+        Wrong{ "ratedCurrent", entry("rated_current: 0"), { BELT, "'rated_current'", "above 0" } },
+        Wrong{ "ratedVoltage", entry("rated_voltage: high"), { BELT, "'rated_voltage'", "'high'" } },
+        Wrong{ "configureBlock", entry("configure_block: 1"), { BELT, "'configure_block'", "true, false" } },
+        Wrong{ "shortBlock", entry("block_read: [1, 2]"), { BELT, "'block_read'", "[1, 2]", "five codes" } },
+        Wrong{ "blockCode", entry("block_read: [1, 2, 3, 4, 15]"), { BELT, "'block_read'", "15", "0 to 14" } },
+        Wrong{ "unexpectedMotion",
+               entry("stop_unexpected_motion: please"),
+               { BELT, "'stop_unexpected_motion'", ALLOWED } },
+        Wrong{ "releaseOnExit", entry("release_on_exit: 0"), { BELT, "'release_on_exit'", "true, false" } },
+        Wrong{ "overridesList", entry("overrides: [1]"), { BELT, "'overrides'", "[1]", ALLOWED } },
+        Wrong{ "unknownOverride", entry("overrides: {no_such_key: 1}"), { BELT, "no_such_key" } },
+        Wrong{ "confirmNumber", entry("confirm: [1]"), { BELT, "'confirm'", "[1]", ALLOWED } },
+        Wrong{ "unknownConfirm", entry("confirm: [no_such_item]"), { BELT, "confirm", "no_such_item" } }),
+    [](const testing::TestParamInfo<Wrong>& info) { return info.param.name; });
+
+TEST(ConfigurationTest, aFileWithoutAMapIsRefused)
+{
+  EXPECT_THAT(refusal("- 1\n"), AllOf(HasSubstr("~"), HasSubstr("no map"), HasSubstr(ALLOWED)));
+  EXPECT_THAT(refusal(""), HasSubstr("no map"));
+}
+
+TEST(ConfigurationTest, aFileIsNamedAsThePlace)
+{
+  const ScanListFile file("scan_list: [{name: belt, node: 0, drive: omron_mx2}]\n");
+  try
+  {
+    readConfiguration(readYamlFile(file.path()), "line.yaml", PROFILES);
+    FAIL() << "was accepted";
+  }
+  catch (const drive::ConfigurationError& error)
+  {
+    EXPECT_THAT(error.what(), HasSubstr("line.yaml: scan_list[0] (belt): key 'node' = 0"));
+  }
+}
+
+TEST(ConfigurationTest, malformedYamlIsReportedWithFileAndLine)
+{
+  EXPECT_THAT(refusal("port: /dev/ttyS0\nscan_list: [\n"), AllOf(HasSubstr(".yaml:"), HasSubstr("valid YAML")));
+  EXPECT_THAT(refusal("retries: 1\nretries: 2\n" + ONE), AllOf(HasSubstr(".yaml:2:"), HasSubstr("'retries'")));
+}
+
+TEST(ConfigurationTest, aMissingFileIsNamed)
+{
+  EXPECT_THROW(readYamlFile("/nonexistent/scan_list.yaml"), drive::ConfigurationError);
+}
+
+TEST(ConfigurationTest, aMalformedProfileIsReportedWithFileAndLine)
+{
+  const std::string path = testing::TempDir() + "bus_configuration_test_profile.yaml";
+  std::ofstream(path) << "title: broken\nnonsense: [\n";
+  EXPECT_THAT(refusal(driven(path)), AllOf(HasSubstr(BELT), HasSubstr("'drive'"), HasSubstr(path + ":")));
+  std::remove(path.c_str());
+}
+
+TEST(ConfigurationTest, valuesHaveTheTypesOfTheParameterServer)
+{
+  const ScanListFile file("{a: 1, b: 1.0, c: '1', d: true, e: 0x10, f: 1e3, g: text, h: , i: off, j: -3}\n");
+  const Value value = readYamlFile(file.path());
+  EXPECT_EQ(Value::Type::Integer, value.map.at("a").type);
+  EXPECT_EQ(Value::Type::Number, value.map.at("b").type);
+  EXPECT_EQ(Value::Type::Text, value.map.at("c").type);
+  EXPECT_EQ(Value::Type::Boolean, value.map.at("d").type);
+  EXPECT_EQ(16, value.map.at("e").integer);
+  EXPECT_DOUBLE_EQ(1000.0, value.map.at("f").number);
+  EXPECT_EQ("text", value.map.at("g").text);
+  EXPECT_EQ(Value::Type::None, value.map.at("h").type);
+  EXPECT_FALSE(value.map.at("i").boolean);
+  EXPECT_EQ(-3, value.map.at("j").integer);
+}
+
+TEST(ConfigurationTest, theShippedScanListsAreAccepted)
+{
+  for (const char* name : { "conveyor_line", "diff_drive_robot" })
+  {
+    const std::string path = std::string(INVERTER_BUS_ROOT) + "/config/" + name + ".yaml";
+    EXPECT_NO_THROW(readConfiguration(readYamlFile(path), path, PROFILES)) << path;
+  }
+}
+}  // namespace
+}  // namespace bus
+}  // namespace inverter_bus

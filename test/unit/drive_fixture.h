@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_TEST_DRIVE_FIXTURE_H
+#define INVERTER_BUS_TEST_DRIVE_FIXTURE_H
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/drive/drive.h"
+
+namespace inverter_bus
+{
+namespace drive
+{
+/// The profiles as shipped; CMake tells where.
+inline std::string profileDirectory()
+{
+  return std::string(INVERTER_BUS_ROOT) + "/config/drives";
+}
+
+inline Drive shipped(const std::string& name, const ProfileChanges& changes = ProfileChanges())
+{
+  return Drive(loadProfile(name, profileDirectory(), changes));
+}
+
+/// "01 05 00 00" as bytes.
+inline wire::Bytes bytes(const std::string& hex)
+{
+  wire::Bytes result;
+  std::istringstream stream(hex);
+  std::string byte;
+  while (stream >> byte)
+  {
+    result.push_back(static_cast<std::uint8_t>(std::stoul(byte, nullptr, 16)));
+  }
+  return result;
+}
+
+/// A frame as a manual or a trace prints it, without the CRC: station and PDU.
+inline std::string printed(const wire::Request& request)
+{
+  char buffer[4];
+  std::snprintf(buffer, sizeof(buffer), "%02X", request.station);
+  std::string result = buffer;
+  for (const std::uint8_t byte : request.pdu)
+  {
+    std::snprintf(buffer, sizeof(buffer), " %02X", byte);
+    result += buffer;
+  }
+  return result;
+}
+
+/// A profile file that is gone after the test.
+class ProfileFile
+{
+public:
+  explicit ProfileFile(const std::string& text)
+  {
+    const char* directory = std::getenv("TMPDIR");
+    static int count = 0;
+    path_ = std::string(directory != nullptr ? directory : "/tmp") + "/drive_test_" + std::to_string(getpid()) + "_" +
+            std::to_string(++count) + ".yaml";
+    std::ofstream(path_) << text;
+  }
+  ~ProfileFile()
+  {
+    std::remove(path_.c_str());
+  }
+  ProfileFile(const ProfileFile&) = delete;
+  ProfileFile& operator=(const ProfileFile&) = delete;
+
+  const std::string& path() const
+  {
+    return path_;
+  }
+  Profile load(const ProfileChanges& changes = ProfileChanges()) const
+  {
+    return loadProfile(path_, "", changes);
+  }
+
+private:
+  std::string path_;
+};
+
+/// A small complete profile; tests change single lines of it.
+inline std::string smallProfile()
+{
+  return R"(drive: small
+title: A small drive
+protocol: modbus_rtu
+numbering: {register_offset: -1, coil_offset: -1}
+stations: {first: 1, last: 31}
+serial:
+  baud_rates: [9600, 19200]
+  data_bits: [8]
+  parity: [none]
+  stop_bits: [1]
+limits:
+  functions: [1, 3, 5, 6, 16]
+  read_registers: 8
+  write_registers: 8
+  read_coils: 16
+spans:
+  registers: [[0x0100, 0x0120]]
+frequency:
+  maximum: 50.0
+points:
+  frequency: {register: 0x0001, resolution: 0.01, unit: Hz}
+  run: {coil: 1}
+  direction: {coil: 2}
+sequences:
+  forward: [{frequency: setpoint}, {direction: 0}, {run: 1}]
+  stop: [{run: 0}]
+status:
+  run_seen: {coil: 1}
+  running: {coil: 5}
+  output_frequency: {register: 0x0100, resolution: 0.01, unit: Hz}
+faults:
+  table:
+    1: overcurrent
+parameters:
+  P01: {register: 0x0200, resolution: 0.1, unit: s, range: [0.1, 600.0]}
+  P02: {register: 0x0201, words: 2}
+)";
+}
+
+/// \p text with \p from, which must be there once, replaced by \p to.
+inline std::string replaced(const std::string& text, const std::string& from, const std::string& to)
+{
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos || text.find(from, at + 1) != std::string::npos)
+  {
+    return "the test's own mistake: '" + from + "' is not in the text once";
+  }
+  std::string result = text;
+  return result.replace(at, from.size(), to);
+}
+}  // namespace drive
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_TEST_DRIVE_FIXTURE_H

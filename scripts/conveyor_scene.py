@@ -28,7 +28,7 @@ from inverter_bus.srv import InjectFault, ReadFaults, Reset, Stop, StopRequest
 from std_msgs.msg import Float64
 
 COMMAND_RATE = 10.0  # [Hz], well above what command_timeout asks for
-PATIENCE = 60.0  # [s] for a step to be seen; a busy machine may be slow, a wrong step fails all the same
+PATIENCE = 45.0  # [s] for a step to be seen: generous, for busy machines
 TRIP_CODE = 7  # overvoltage on an MX2
 
 
@@ -64,10 +64,14 @@ class Belt:
     def online(self):
         return self.status is not None and not self.status.communication_error
 
+    def ready(self):
+        """The drive would follow a RUN, as far as it can tell."""
+        return self.status.ready or not self.status.known & InverterStatus.KNOWN_READY
+
     def runs_at(self, velocity):
         status = self.status
         return (self.online() and status.running and not status.faulted and
-                abs(status.velocity - velocity) <= 0.01 * abs(velocity) + 0.011)
+                abs(status.velocity - velocity) <= 0.02 * abs(velocity))
 
     def at_rest(self):
         return self.online() and not self.status.running and not self.status.run_command
@@ -205,7 +209,7 @@ class Scene:
 
     def find_drives(self):
         belts = self.line.belts
-        self.wait('every drive online and ready', lambda: all(belt.online() and belt.status.ready for belt in belts))
+        self.wait('every drive online and ready', lambda: all(belt.online() and belt.ready() for belt in belts))
         self.unlock(belts)
         return ', '.join('%s (station %d)' % (belt.name, belt.status.node) for belt in belts)
 
@@ -230,7 +234,7 @@ class Scene:
         self.wait('%s at rest' % belt.name, belt.at_rest)
         if not all(other.runs_at(self.fast) for other in self.others(belt)):
             raise StepFailed('another belt was disturbed; ' + self.describe())
-        return answer.message or 'confirmed by the drive'
+        return answer.message
 
     def see_refusal(self, belt):
         self.wait('%s locked and its command refused' % belt.name,
@@ -261,8 +265,9 @@ class Scene:
         if answer.present.code != TRIP_CODE or not answer.faults or answer.faults[0].code != TRIP_CODE:
             raise StepFailed('the drive reports trip %d' % answer.present.code)
         fault = answer.faults[0]
-        return '%.2f Hz, %.1f A, %.0f V when it tripped; %d in its memory' % (
-            fault.output_frequency, fault.output_current, fault.dc_voltage, len(answer.faults))
+        return '%s, %s and %s when it tripped; %d in its memory' % (
+            value('%.2f Hz', fault.output_frequency), value('%.1f A', fault.output_current),
+            value('%.0f V', fault.dc_voltage), len(answer.faults))
 
     def reset(self, belt):
         answer = belt.reset()
@@ -414,8 +419,9 @@ class LiveTable:
         fault = status.fault_text if status.faulted else status.error_text
         width = columns - bar - 60
         text = self.paint('red' if status.faulted else 'yellow', fit(fault, width)) if fault and width > 4 else ''
-        return ' %-16s %s %s %9.2f %9.2f %6.2f A  %s' % (belt.name[:16], number, meter, status.commanded_velocity,
-                                                       status.velocity, status.output_current, text)
+        return ' %-16s %s %s %9.2f %9s %8s  %s' % (belt.name[:16], number, meter, status.commanded_velocity,
+                                                 value('%.2f', status.velocity), value('%.2f A', status.output_current),
+                                                 text)
 
     def bus_lines(self, bar, columns):
         status = self.line.bus_status
@@ -441,6 +447,11 @@ class LiveTable:
 
     def paint(self, colour, text):
         return '\x1b[%sm%s\x1b[0m' % (self.COLOURS[colour], text)
+
+
+def value(form, number):
+    """What a drive can't tell is NaN."""
+    return '-' if math.isnan(number) else form % number
 
 
 def fit(text, width):
@@ -480,7 +491,7 @@ def main():
         return 1
     rospy.init_node('conveyor_scene', disable_signals=True)
     once = arguments.once or rospy.get_param('~once', False) or not sys.stdout.isatty()
-    slow, fast = float(rospy.get_param('~slow', 20.0)), float(rospy.get_param('~fast', 35.0))
+    slow, fast = float(rospy.get_param('~slow', 0.2)), float(rospy.get_param('~fast', 0.35))
     line = Line(rospy.get_param('~bus', 'conveyor'), rospy.get_param('~simulator', 'simulated_bus'))
     show = PlainLines() if once else LiveTable(line, 1.15 * max(abs(slow), abs(fast)))
     scene = Scene(line, slow, fast, show)

@@ -205,11 +205,13 @@ void emit(const Value& value, YAML::Emitter& out)
 Value readYamlFile(const std::string& path)
 {
   std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf()))
+  file.peek();  // a folder can be opened, but not read
+  if (!file.is_open() || file.bad())
   {
     throw drive::ConfigurationError(path + ": cannot be read; allowed: a YAML file with the node's parameters");
   }
+  std::ostringstream text;
+  text << file.rdbuf();
   ValueReader reader(path);
   try
   {

@@ -11,7 +11,7 @@ namespace bus
 namespace
 {
 constexpr double OLDEST_SLOW_VALUE_S = 1.0;
-// A slow value is read again when it would grow too old before the next refresh but one.
+// A slow value is read again when it would be too old at the next refresh; only one goes per refresh, so they stagger.
 constexpr double SLOW_MARGIN_S = 0.1;
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
@@ -126,7 +126,7 @@ void Refresh::plan(TimePoint now, Duration cycle_time)
   position_ = 0;
   fault_planned_ = false;
   scratch_ = drive::Monitor();
-  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S) - 2 * cycle_time;
+  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S) - cycle_time;
   bool slow_planned = false;
   for (std::size_t step = 0; step < blocks_.size() && has_stamp_; ++step)
   {

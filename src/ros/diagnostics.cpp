@@ -127,8 +127,6 @@ void Diagnostics::showInverter(std::size_t index, Entry& entry) const
   std::vector<bus::Finding> findings = report.findings;
   addPublishers(commands_.publishers(index), config.name + "/command", findings);
   summarize(findings, motionText(report.status), entry);
-  entry.add("Station", std::to_string(config.node));
-  entry.add("Drive", config.drive);
   addValues(report.values, entry);
 }
 
@@ -137,7 +135,6 @@ void Diagnostics::showBus(Entry& entry) const
   std::vector<bus::Finding> findings = report_.findings;
   addPublishers(commands_.groupPublishers(), "command", findings);
   summarize(findings, report_.bus.connected ? "connected" : "not connected", entry);
-  entry.add("Port", config_.port);
   addValues(report_.values, entry);
 }
 }  // namespace ros_node

@@ -12,6 +12,8 @@
 int main(int argc, char** argv)
 {
   using namespace inverter_bus::ros_node;
+  // rosconsole writes to both stdout and stderr: without this, a log that takes both has its lines out of order.
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try
   {
     Lifetime lifetime;

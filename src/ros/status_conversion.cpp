@@ -151,7 +151,8 @@ InverterStatus toMessage(const bus::InverterStatus& status, const bus::InverterC
   message.drive = config.drive;
   putOwn(status, message);
   // What an offline drive said last is no status any more.
-  const drive::Monitor monitor = status.communication_error ? drive::Monitor() : status.monitor;
+  // Empty while the inverter is offline.
+  const drive::Monitor& monitor = status.monitor;
   putFlags(monitor, message);
   putCodes(monitor, drive, message);
   putQuantities(monitor, message);

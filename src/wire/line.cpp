@@ -111,7 +111,7 @@ bool Line::settle()
 
 bool Line::mayAsk(const Request& request) const
 {
-  return mayAskAt(request) <= clock_.now();
+  return bars_.barredUntil(protocol_.shape(request)) <= clock_.now();
 }
 
 TimePoint Line::mayAskAt(const Request& request) const

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -174,6 +175,25 @@ TEST_F(SerialPortTest, silenceEndsAtTheDeadline)
   const TimePoint deadline = steady_clock::now() + milliseconds(5);
   EXPECT_EQ(ReceiveResult::Silence, port->receive(buffer, deadline));
   EXPECT_GE(steady_clock::now(), deadline);
+}
+
+TEST_F(SerialPortTest, aSignalDoesNotEndTheWaiting)
+{
+  const auto port = makeSerialPort(settings_);
+  ASSERT_EQ(OpenResult::Opened, open(*port)) << error_;
+  struct sigaction action = {};
+  struct sigaction before = {};
+  action.sa_handler = [](int) {};
+  ASSERT_EQ(0, ::sigaction(SIGALRM, &action, &before));
+  const itimerval every_millisecond{ { 0, 1000 }, { 0, 1000 } };
+  ASSERT_EQ(0, ::setitimer(ITIMER_REAL, &every_millisecond, nullptr));
+  Bytes buffer;
+  const TimePoint deadline = steady_clock::now() + milliseconds(10);
+  EXPECT_EQ(ReceiveResult::Silence, port->receive(buffer, deadline));
+  EXPECT_GE(steady_clock::now(), deadline);
+  const itimerval never{};
+  ::setitimer(ITIMER_REAL, &never, nullptr);
+  ::sigaction(SIGALRM, &before, nullptr);
 }
 
 TEST_F(SerialPortTest, aPastDeadlineTakesWhatIsThere)

@@ -41,8 +41,8 @@ struct ItemRules
   bool scale = true;
 };
 
-/// Reads the keys of an item: register or coil and what belongs to it, `unconfirmed` and `source`. Other keys of the map
-/// are left to the caller, who calls YamlMap::finish(). Empty after a mistake in the address.
+/// Reads the keys of an item: register or coil and what belongs to it, `unconfirmed` and `source`. Other keys of the
+/// map are left to the caller, who calls YamlMap::finish(). Empty after a mistake in the address.
 std::optional<Item> readItem(YamlMap& map, const Numbering& numbering, const ItemRules& rules);
 
 /// [[first, last], ...] of printed numbers, in ascending order and apart from each other.

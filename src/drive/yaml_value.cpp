@@ -25,7 +25,7 @@ namespace
 constexpr int MAX_DEPTH = 20;
 /// More than any profile; a few nested aliases can stand for billions of values.
 constexpr std::size_t MAX_VALUES = 200000;
-constexpr std::uintmax_t MAX_FILE_SIZE = 4 * 1024 * 1024;
+constexpr std::uintmax_t MAX_FILE_SIZE = 4194304;  // 4 MiB
 
 class Converter
 {
@@ -90,7 +90,8 @@ private:
         continue;
       }
       const std::string key = entry->first.Scalar();
-      const std::string key_path = path.empty() ? key : path + "." + key;
+      std::string key_path = path;
+      key_path.append(path.empty() ? "" : ".").append(key);
       if (value.find(key) != nullptr)
       {
         problems_.add(key_where, key_path, "duplicate key: allowed once");

@@ -20,7 +20,8 @@ namespace
 constexpr double LONGEST = 86400.0;  // [s] of any duration
 
 const char* const HELP =
-    "help; list; bus show|frames [N]|unplug [S]|plug|echo on/off|silent on/off/S|noise [N]|foreign HEX [now] [raw]|reset; "
+    "help; list; bus show|frames [N]|unplug [S]|plug|echo on/off|silent on/off/S|noise [N]|foreign HEX [now] "
+    "[raw]|reset; "
     "NAME show|get CODE|set CODE X|offline [S]|online|trip N|clear|busy S|power_cycle [S]|power on/off|panel HZ|"
     "panel_release|panel_stop|sto on/off|load X|damaged|truncated [BYTES]|noise [BYTES]|late S|foreign station/shape|"
     "exception N|lost_request|lost_reply [count N] [for S] [function F]";
@@ -227,7 +228,8 @@ std::string powerCycle(SimulatedDrive& drive, CommandWords& words, TimePoint now
 std::map<std::string, DriveAction> faultActions()
 {
   return {
-    { "damaged", [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::DAMAGED, 0); } },
+    { "damaged",
+      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::DAMAGED, 0); } },
     { "truncated",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
         const double bytes = w.takeNumberOr(4, "bytes", 0, 256);
@@ -257,6 +259,12 @@ std::map<std::string, DriveAction> faultActions()
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::LOST_REQUEST, 0); } },
     { "lost_reply",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::LOST_REPLY, 0); } },
+  };
+}
+
+std::map<std::string, DriveAction> connectionActions()
+{
+  return {
     { "clear",
       [](SimulatedDrive& d, CommandWords&, TimePoint) {
         d.clearFaults();
@@ -347,8 +355,10 @@ const std::map<std::string, DriveAction>& driveActions()
 {
   static const std::map<std::string, DriveAction> ACTIONS = [] {
     std::map<std::string, DriveAction> actions = faultActions();
-    const std::map<std::string, DriveAction> more = handActions();
-    actions.insert(more.begin(), more.end());
+    for (const auto& more : { connectionActions(), handActions() })
+    {
+      actions.insert(more.begin(), more.end());
+    }
     return actions;
   }();
   return ACTIONS;

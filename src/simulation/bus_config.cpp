@@ -98,8 +98,8 @@ LineSettings readLine(const YAML::Node& root)
   LineSettings line;
   if (root["baud_rate"])
   {
-    line.baud_rate = toInteger(root["baud_rate"], "baud_rate",
-                               { 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 115200 });
+    line.baud_rate =
+        toInteger(root["baud_rate"], "baud_rate", { 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 115200 });
   }
   if (root["data_bits"])
   {
@@ -179,8 +179,9 @@ void readDetail(const std::string& key, const YAML::Node& value, const std::stri
   }
   else
   {
-    throw ConfigError(place + ": unknown key (allowed: model, parameters, turnaround, start_up_time, reset_silence, "
-                              "eeprom_time, load, restart_after_timeout, self_clearing_coils)");
+    throw ConfigError(place +
+                      ": unknown key (allowed: model, parameters, turnaround, start_up_time, reset_silence, "
+                      "eeprom_time, load, restart_after_timeout, self_clearing_coils)");
   }
 }
 

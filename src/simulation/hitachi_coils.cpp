@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 
-// Coils of the MX2 and RX. Numbers as printed (MX2-SYS p. 302 and 320, JX>MX2, I578 p. 498); the frame carries number - 1.
+// Coils of the MX2 and RX. Numbers as printed (MX2-SYS p. 302 and 320, JX>MX2, I578 p. 498); the frame carries
+// number - 1.
 
 #include <cmath>
 

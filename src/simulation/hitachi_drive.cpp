@@ -117,7 +117,8 @@ bool HitachiDrive::serialFits() const
 {
   const auto baud = model_.bauds.find(options_.line.baud_rate);
   bool fits = baud != model_.bauds.end() && memory_.ram(code_.c071) == baud->second &&
-              memory_.ram(code_.c074) == static_cast<std::uint32_t>(options_.line.parity) && options_.line.data_bits == 8;
+              memory_.ram(code_.c074) == static_cast<std::uint32_t>(options_.line.parity) &&
+              options_.line.data_bits == 8;
   const Index data_bits = memory_.find("C073");
   if (data_bits != ParameterMemory::NONE)
   {

@@ -28,8 +28,8 @@ HitachiModel makeMx2()
   model.current_step = 0.01;      // MX2-SYS, d002
   model.trip_voltage_step = 0.1;  // MX2-SYS; a real drive answered 0D02h = 333.0 V
   // C071, I585 and SEED: 3 = 2400 ... 10 = 115200.
-  model.bauds = { { 2400, 3 }, { 4800, 4 }, { 9600, 5 }, { 19200, 6 }, { 38400, 7 }, { 57600, 8 }, { 76800, 9 },
-                  { 115200, 10 } };
+  model.bauds = { { 2400, 3 },  { 4800, 4 },  { 9600, 5 },  { 19200, 6 },
+                  { 38400, 7 }, { 57600, 8 }, { 76800, 9 }, { 115200, 10 } };
   model.parameters = mx2Parameters();
   return model;
 }
@@ -46,9 +46,9 @@ HitachiModel makeRx()
   model.limits.write_registers = 4;
   model.last_station = 32;
   model.inputs = 8;
-  model.busy_exception = true;    // 26h: SJ700D
-  model.current_step = 0.1;       // SJ700a (trip block); d002 taken the same
-  model.trip_voltage_step = 1.0;  // SJ700a
+  model.busy_exception = true;                                            // 26h: SJ700D
+  model.current_step = 0.1;                                               // SJ700a (trip block); d002 taken the same
+  model.trip_voltage_step = 1.0;                                          // SJ700a
   model.bauds = { { 2400, 3 }, { 4800, 4 }, { 9600, 5 }, { 19200, 6 } };  // C071, I578
   model.parameters = rxParameters();
   return model;

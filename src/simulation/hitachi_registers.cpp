@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 
-// Holding registers of the MX2 and RX. Numbers as printed (MX2-SYS chapter 6 and I570 appendix B; SJ700a for the RX); the
-// frame carries number - 1. 32-bit values: high word first.
+// Holding registers of the MX2 and RX. Numbers as printed (MX2-SYS chapter 6 and I570 appendix B; SJ700a for the RX);
+// the frame carries number - 1. 32-bit values: high word first.
 
 #include <cmath>
 #include <utility>
@@ -59,33 +59,33 @@ void HitachiDrive::buildMonitors()
     const double ramp = motor_.accelerating() ? 4.0 : (motor_.decelerating() ? 2.0 : 3.0);
     return !motor_.turning() ? 1.0 : (reversing ? (motor_.frequency() > 0.0 ? 7.0 : 8.0) : ramp);
   });
-  addMonitor(0x0011, 1, [this] { return static_cast<double>(trip_count_); });                        // d080
-  addMonitor(0x1001, 2, [this] { return std::abs(motor_.frequency()) * 100.0; });                    // d001
-  addMonitor(0x1003, 1, [this] { return motor_.current() / model_.current_step; });                  // d002
+  addMonitor(0x0011, 1, [this] { return static_cast<double>(trip_count_); });        // d080
+  addMonitor(0x1001, 2, [this] { return std::abs(motor_.frequency()) * 100.0; });    // d001
+  addMonitor(0x1003, 1, [this] { return motor_.current() / model_.current_step; });  // d002
   addMonitor(0x1004, 1, [this] { return motor_.frequency() == 0.0 ? 0.0 : (motor_.frequency() > 0.0 ? 1.0 : 2.0); });
-  addMonitor(0x1005, 2, [this] { return pid_feedback_ / 10.0; });                                    // d004
+  addMonitor(0x1005, 2, [this] { return pid_feedback_ / 10.0; });  // d004
   addMonitor(0x1007, 1, [this] { return static_cast<double>(coilWord(0x0007) & ((1U << model_.inputs) - 1U)); });
   addMonitor(0x1008, 1, [this] { return (motor_.turning() ? 1.0 : 0.0) + (tripped_ ? 4.0 : 0.0); });  // d006
-  addMonitor(0x1009, 2, [this] { return std::abs(motor_.frequency()) * memory_.ram(code_.b086); });  // d007
-  addMonitor(0x100B, 2, zero);                                                                       // d008, no encoder
-  addMonitor(0x100D, 1, zero);                                                                       // d009
-  addMonitor(0x100E, 1, zero);                                                                       // d010
-  addMonitor(0x1010, 1, [this] { return motor_.torque(); });                                         // d012
-  addMonitor(0x1011, 1, [this] { return motor_.voltage() * 10.0; });                                 // d013
-  addMonitor(0x1012, 1, [this] { return motor_.power() * 10.0; });                                   // d014
-  addMonitor(0x1013, 2, [this] { return energy_ * 10.0; });                                          // d015
-  addMonitor(0x1015, 2, [this] { return std::floor(run_time_ / HOUR); });                            // d016
-  addMonitor(0x1017, 2, [this] { return std::floor(power_time_ / HOUR); });                          // d017
-  addMonitor(0x1019, 1, [this] { return motor_.temperature() * 10.0; });                             // d018
-  addMonitor(0x101D, 1, zero);                                                                       // d022
-  addMonitor(0x101E, 1, zero);                                                                       // d023
-  addMonitor(0x101F, 1, zero);                                                                       // d024
-  addMonitor(0x1026, 1, [this] { return motor_.dcVoltage() * 10.0; });                               // d102
-  addMonitor(0x1027, 1, zero);                                                                       // d103
-  addMonitor(0x1028, 1, [this] { return thermal_ * 1000.0; });                                       // d104
-  addMonitor(0x102E, 2, zero);                                                                       // d025
-  addMonitor(0x1030, 2, zero);                                                                       // d026
-  addMonitor(0x1032, 2, zero);                                                                       // d027
+  addMonitor(0x1009, 2, [this] { return std::abs(motor_.frequency()) * memory_.ram(code_.b086); });   // d007
+  addMonitor(0x100B, 2, zero);                                               // d008, no encoder
+  addMonitor(0x100D, 1, zero);                                               // d009
+  addMonitor(0x100E, 1, zero);                                               // d010
+  addMonitor(0x1010, 1, [this] { return motor_.torque(); });                 // d012
+  addMonitor(0x1011, 1, [this] { return motor_.voltage() * 10.0; });         // d013
+  addMonitor(0x1012, 1, [this] { return motor_.power() * 10.0; });           // d014
+  addMonitor(0x1013, 2, [this] { return energy_ * 10.0; });                  // d015
+  addMonitor(0x1015, 2, [this] { return std::floor(run_time_ / HOUR); });    // d016
+  addMonitor(0x1017, 2, [this] { return std::floor(power_time_ / HOUR); });  // d017
+  addMonitor(0x1019, 1, [this] { return motor_.temperature() * 10.0; });     // d018
+  addMonitor(0x101D, 1, zero);                                               // d022
+  addMonitor(0x101E, 1, zero);                                               // d023
+  addMonitor(0x101F, 1, zero);                                               // d024
+  addMonitor(0x1026, 1, [this] { return motor_.dcVoltage() * 10.0; });       // d102
+  addMonitor(0x1027, 1, zero);                                               // d103
+  addMonitor(0x1028, 1, [this] { return thermal_ * 1000.0; });               // d104
+  addMonitor(0x102E, 2, zero);                                               // d025
+  addMonitor(0x1030, 2, zero);                                               // d026
+  addMonitor(0x1032, 2, zero);                                               // d027
   buildModelMonitors();
   buildTripMonitors();
 }
@@ -99,9 +99,9 @@ void HitachiDrive::buildModelMonitors()
     addMonitor(0x1034, 2, zero);                                            // d028 (MEM)
     return;
   }
-  addMonitor(0x1036, 2, zero);                                                      // d029
-  addMonitor(0x1038, 2, zero);                                                      // d030
-  addMonitor(0x1057, 1, zero);                                                      // d060
+  addMonitor(0x1036, 2, zero);                                                             // d029
+  addMonitor(0x1038, 2, zero);                                                             // d030
+  addMonitor(0x1057, 1, zero);                                                             // d060
   addMonitor(0x1059, 1, [this] { return static_cast<double>(memory_.ram(code_.a001)); });  // d062 (content MEM)
   addMonitor(0x105A, 1, [this] { return static_cast<double>(memory_.ram(code_.a002)); });  // d063 (content MEM)
   for (const int number : { 0x10A1, 0x10A2, 0x10A4, 0x10A6, 0x10A8 })
@@ -229,8 +229,8 @@ ModbusException HitachiDrive::checkParameter(Index index, std::uint32_t raw) con
   {
     return ModbusException::VALUE_OUT_OF_RANGE;
   }
-  const bool base_above_maximum = (index == code_.a003 && raw > memory_.ram(code_.a004)) ||
-                                  (index == code_.a004 && raw < memory_.ram(code_.a003));
+  const bool base_above_maximum =
+      (index == code_.a003 && raw > memory_.ram(code_.a004)) || (index == code_.a004 && raw < memory_.ram(code_.a003));
   const double hertz = raw / std::pow(10.0, info.decimals);
   const bool speed_above_maximum = info.code >= "A020" && info.code <= "A035" && hertz > maximumFrequency();
   if (base_above_maximum || speed_above_maximum)
@@ -313,9 +313,8 @@ ModbusException HitachiDrive::writeRegisters(std::uint16_t wire, const std::vect
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const std::size_t number = wire + 1U + i;
-    const ModbusException exception = number <= 0xFFFFU ?
-                                          stage(static_cast<std::uint16_t>(number), values[i], change) :
-                                          ModbusException::ADDRESS_NOT_FOUND;
+    const ModbusException exception = number <= 0xFFFFU ? stage(static_cast<std::uint16_t>(number), values[i], change)
+                                                        : ModbusException::ADDRESS_NOT_FOUND;
     if (exception != ModbusException::NONE)
     {
       return exception;

@@ -270,8 +270,7 @@ ModbusException ModbusSlave::executeReadWrite(const Bytes& frame, Bytes& reply)
   }
   // Modbus V1.1b3, 6.17: the write comes before the read.
   const ModbusException exception = writeRegisters(modbusWord(frame, 6), words(frame, 11, count), READ_WRITE);
-  return exception != ModbusException::NONE ? exception :
-                                              executeReadRegisters(modbusWord(frame, 2), read_count, reply);
+  return exception != ModbusException::NONE ? exception : executeReadRegisters(modbusWord(frame, 2), read_count, reply);
 }
 }  // namespace simulation
 }  // namespace inverter_bus

@@ -13,7 +13,8 @@ namespace
 {
 const Fault* find(const std::vector<Fault>& faults, FaultKind kind)
 {
-  const auto found = std::find_if(faults.begin(), faults.end(), [kind](const Fault& fault) { return fault.kind == kind; });
+  const auto found =
+      std::find_if(faults.begin(), faults.end(), [kind](const Fault& fault) { return fault.kind == kind; });
   return found == faults.end() ? nullptr : &*found;
 }
 }  // namespace
@@ -140,9 +141,9 @@ std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const std::vecto
   }
   const Fault* exception = find(faults, FaultKind::EXCEPTION);
   bool good = true;
-  std::optional<Answer> reply = exception != nullptr ?
-                                    std::optional<Answer>(exceptionAnswer(frame, static_cast<int>(exception->value))) :
-                                    answer(frame, now, good);
+  std::optional<Answer> reply = exception != nullptr
+                                    ? std::optional<Answer>(exceptionAnswer(frame, static_cast<int>(exception->value)))
+                                    : answer(frame, now, good);
   if (!good)
   {
     ++counters_.damaged;

@@ -248,7 +248,8 @@ void SimulatedLine::process(TimePoint time)
       processTransmission(live_[i], time);
     }
   }
-  live_.erase(std::remove_if(live_.begin(), live_.end(), [](const Transmission& one) { return one.over; }), live_.end());
+  live_.erase(std::remove_if(live_.begin(), live_.end(), [](const Transmission& one) { return one.over; }),
+              live_.end());
 }
 
 void SimulatedLine::processForeign(TimePoint time)

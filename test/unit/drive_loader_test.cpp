@@ -296,6 +296,32 @@ TEST(DriveLoader, AMessageStaysOnOneLine)
   }
 }
 
+/// The last YAML block of the manual for profile writers.
+std::string exampleOfTheDocumentation()
+{
+  std::ifstream stream(std::string(INVERTER_BUS_ROOT) + "/docs/drive_profiles.md");
+  std::stringstream text;
+  text << stream.rdbuf();
+  const std::string fence = "```yaml\n";
+  const std::size_t start = text.str().rfind(fence) + fence.size();
+  return text.str().substr(start, text.str().find("```", start) - start);
+}
+
+TEST(DriveLoader, TheExampleOfTheDocumentationIsAGoodProfile)
+{
+  const ProfileFile file(exampleOfTheDocumentation());
+  EXPECT_THAT(checkProfile(file.path()), IsEmpty());
+  const Drive drive(file.load());
+  EXPECT_EQ(drive.profile().name, "acme_a1");
+  std::vector<std::string> reads;
+  for (const ReadBlock& block : drive.fastBlocks())
+  {
+    reads.push_back(printed(drive.read(1, block)));
+  }
+  EXPECT_THAT(reads, testing::ElementsAre("01 03 20 00 00 01", "01 03 21 00 00 03"));
+  EXPECT_EQ(printed(drive.write(1, "command", 2)), "01 10 20 00 00 01 02 00 02");
+}
+
 TEST(DriveLoader, HexadecimalAndDecimalNumbersAreTheSame)
 {
   const ProfileFile file(replaced(smallProfile(), "{register: 0x0200,", "{register: 512,"));

@@ -36,9 +36,10 @@ std::string errorOf(const std::string& yaml)
 
 TEST(SimulatedBusConfig, listWithDefaults)
 {
-  const BusConfig config = read("port: /dev/ttyUSB0\nbaud_rate: 9600\nparity: even\nstop_bits: 2\ninterval: 0.1\n"
-                                "defaults: {drive: omron_rx, rated_current: 9.5}\n"
-                                "scan_list: [{name: a, node: 3, max_velocity: 1}, {name: b, node: 4, drive: omron_mx2}]");
+  const BusConfig config = read(
+      "port: /dev/ttyUSB0\nbaud_rate: 9600\nparity: even\nstop_bits: 2\ninterval: 0.1\n"
+      "defaults: {drive: omron_rx, rated_current: 9.5}\n"
+      "scan_list: [{name: a, node: 3, max_velocity: 1}, {name: b, node: 4, drive: omron_mx2}]");
   EXPECT_EQ(9600, config.line.baud_rate);
   EXPECT_EQ(Parity::EVEN, config.line.parity);
   EXPECT_EQ(2, config.line.stop_bits);
@@ -63,8 +64,9 @@ TEST(SimulatedBusConfig, bitMask)
 
 TEST(SimulatedBusConfig, details)
 {
-  const BusConfig config = read("scan_list: [{name: a, node: 1, drive: /home/me/mine.yaml}]\n"
-                                "simulation: {a: {model: omron_rx, turnaround: 0.005, parameters: {C077: 1.5}}}");
+  const BusConfig config = read(
+      "scan_list: [{name: a, node: 1, drive: /home/me/mine.yaml}]\n"
+      "simulation: {a: {model: omron_rx, turnaround: 0.005, parameters: {C077: 1.5}}}");
   EXPECT_EQ("omron_rx", config.drives[0].model);
   EXPECT_DOUBLE_EQ(0.005, config.drives[0].options.turnaround);
   EXPECT_DOUBLE_EQ(1.5, config.drives[0].options.parameters.at("C077"));

@@ -286,8 +286,9 @@ TEST(SimulatedDrive, watchdogIsExactHoweverLateOneLooks)
 
 TEST(SimulatedDrive, otherStationsDoNotFeedTheWatchdogAndBroadcastsDo)
 {
-  TestBus bus("scan_list: [{name: a, node: 1, drive: omron_mx2}, {name: b, node: 2, drive: omron_mx2}]\n"
-              "simulation: {a: {parameters: {C076: 0, C077: 0.5}}, b: {parameters: {C076: 0, C077: 0.5}}}");
+  TestBus bus(
+      "scan_list: [{name: a, node: 1, drive: omron_mx2}, {name: b, node: 2, drive: omron_mx2}]\n"
+      "simulation: {a: {parameters: {C076: 0, C077: 0.5}}, b: {parameters: {C076: 0, C077: 0.5}}}");
   bus.ask("01 03 00 02 00 01");
   bus.ask("02 03 00 02 00 01");
   for (int i = 0; i < 3; ++i)
@@ -307,8 +308,9 @@ TEST(SimulatedDrive, otherStationsDoNotFeedTheWatchdogAndBroadcastsDo)
 
 TEST(SimulatedDrive, restartAfterTimeoutIsAChoice)
 {
-  TestBus bus("scan_list: [{name: m, node: 1, drive: omron_mx2}]\n"
-              "simulation: {m: {restart_after_timeout: true, parameters: {C076: 4, C077: 0.5, F002: 1, F003: 1}}}");
+  TestBus bus(
+      "scan_list: [{name: m, node: 1, drive: omron_mx2}]\n"
+      "simulation: {m: {restart_after_timeout: true, parameters: {C076: 4, C077: 0.5, F002: 1, F003: 1}}}");
   bus.ask(SPEED_50);
   bus.ask(RUN);
   bus.wait(5.0);
@@ -356,9 +358,9 @@ TEST(SimulatedDrive, enterStoresEveryRamChange)
   EXPECT_EQ("01 06 08 FF 00 01", bus.ask("01 06 08 FF 00 01"));
   EXPECT_EQ("1", bus.shown("m", "eeprom_writes"));
   EXPECT_EQ("2", bus.shown("m", "stored_values"));
-  EXPECT_EQ("01 01 01 01", bus.ask("01 01 00 48 00 01"));         // busy
-  EXPECT_EQ("01 86 22", bus.ask("01 06 14 50 00 64"));            // not now
-  EXPECT_EQ(STOP, bus.ask(STOP));                                 // a command is
+  EXPECT_EQ("01 01 01 01", bus.ask("01 01 00 48 00 01"));  // busy
+  EXPECT_EQ("01 86 22", bus.ask("01 06 14 50 00 64"));     // not now
+  EXPECT_EQ(STOP, bus.ask(STOP));                          // a command is
   bus.wait(0.5);
   EXPECT_EQ("01 01 01 00", bus.ask("01 01 00 48 00 01"));
   bus.command("m power_cycle 0.05");
@@ -371,8 +373,8 @@ TEST(SimulatedDrive, enterAndLockedParametersWhileRunning)
   TestBus bus(oneMx2());
   run(bus);
   EXPECT_EQ("01 86 22", bus.ask("01 06 08 FF 00 01"));
-  EXPECT_EQ("01 86 22", bus.ask("01 06 12 03 01 F4"));                                        // A004
-  EXPECT_EQ("01 10 11 02 00 02", bus.ask("01 10 11 02 00 02 04 00 00 00 64"));                // F002
+  EXPECT_EQ("01 86 22", bus.ask("01 06 12 03 01 F4"));                          // A004
+  EXPECT_EQ("01 10 11 02 00 02", bus.ask("01 10 11 02 00 02 04 00 00 00 64"));  // F002
 }
 
 TEST(SimulatedDrive, writeModeStoresTheNextWriteOnly)
@@ -406,8 +408,11 @@ TEST(SimulatedDrive, wholeTableIsReadable)
     TestBus bus("scan_list: [{name: m, node: 1, drive: " + model->name + "}]");
     for (const Parameter& parameter : model->parameters)
     {
-      const Bytes request{ 1, 3, static_cast<std::uint8_t>((parameter.number - 1) >> 8),
-                           static_cast<std::uint8_t>(parameter.number - 1), 0,
+      const Bytes request{ 1,
+                           3,
+                           static_cast<std::uint8_t>((parameter.number - 1) >> 8),
+                           static_cast<std::uint8_t>(parameter.number - 1),
+                           0,
                            static_cast<std::uint8_t>(parameter.words) };
       const std::string reply = bus.ask(toHex(request));
       EXPECT_EQ(parameter.words == 2 ? "01 03 04" : "01 03 02", reply.substr(0, 8)) << model->name << parameter.code;

@@ -150,9 +150,9 @@ TEST(SimulatedFaults, requestDuringAPowerCycleIsNotAnsweredLater)
 TEST(SimulatedCommands, everyAnswerIsOneLine)
 {
   TestBus bus(oneMx2());
-  for (const char* line : { "help", "list", "bus show", "bus frames 5", "m show", "m get F002", "m set F002 3", "bus reset",
-                            "m power off", "m power on", "m panel 5", "m panel_stop", "m panel_release", "m sto off",
-                            "m load 0.5", "bus plug" })
+  for (const char* line :
+       { "help", "list", "bus show", "bus frames 5", "m show", "m get F002", "m set F002 3", "bus reset", "m power off",
+         "m power on", "m panel 5", "m panel_stop", "m panel_release", "m sto off", "m load 0.5", "bus plug" })
   {
     const std::string answer = bus.command(line);
     EXPECT_EQ("ok", answer.substr(0, 2)) << line << ": " << answer;

@@ -147,15 +147,15 @@ TEST(SimulatedMx2Frames, exceptions)
   TestBus bus(mx2At(1));
   EXPECT_EQ("01 84 01", bus.ask("01 04 00 00 00 01"));
   EXPECT_EQ("01 82 01", bus.ask("01 02 00 00 00 01"));
-  EXPECT_EQ("01 83 02", bus.ask("01 03 10 0E 00 02"));            // 100Fh doesn't exist
-  EXPECT_EQ("01 83 03", bus.ask("01 03 10 00 00 11"));            // 17 registers
+  EXPECT_EQ("01 83 02", bus.ask("01 03 10 0E 00 02"));  // 100Fh doesn't exist
+  EXPECT_EQ("01 83 03", bus.ask("01 03 10 00 00 11"));  // 17 registers
   EXPECT_EQ("01 83 03", bus.ask("01 03 10 00 00 00"));
-  EXPECT_EQ("01 81 03", bus.ask("01 01 00 00 00 21"));            // 33 coils
+  EXPECT_EQ("01 81 03", bus.ask("01 01 00 00 00 21"));  // 33 coils
   EXPECT_EQ("01 85 03", bus.ask("01 05 00 00 12 34"));
-  EXPECT_EQ("01 85 23", bus.ask("01 05 00 0E FF 00"));            // a status coil
-  EXPECT_EQ("01 85 02", bus.ask("01 05 00 0D FF 00"));            // the MX2 has no input S8
-  EXPECT_EQ("01 86 21", bus.ask("01 06 12 00 00 05"));            // A001 = 5 is no choice
-  EXPECT_EQ("01 86 21", bus.ask("01 06 14 50 27 10"));            // C077 = 100.00 s
+  EXPECT_EQ("01 85 23", bus.ask("01 05 00 0E FF 00"));                 // a status coil
+  EXPECT_EQ("01 85 02", bus.ask("01 05 00 0D FF 00"));                 // the MX2 has no input S8
+  EXPECT_EQ("01 86 21", bus.ask("01 06 12 00 00 05"));                 // A001 = 5 is no choice
+  EXPECT_EQ("01 86 21", bus.ask("01 06 14 50 27 10"));                 // C077 = 100.00 s
   EXPECT_EQ("01 90 21", bus.ask("01 10 00 00 00 02 04 00 00 13 89"));  // above A004
   EXPECT_EQ("01 86 02", bus.ask("01 06 30 00 00 00"));
   EXPECT_EQ("13", bus.shown("m", "exceptions"));
@@ -202,7 +202,7 @@ TEST(SimulatedRxFrames, limits)
   EXPECT_EQ("01 03 08 00 00 00 00 00 00 00 00", bus.ask("01 03 10 00 00 04"));
   EXPECT_EQ("01 90 03", bus.ask("01 10 12 15 00 06 0C 00 00 00 00 00 00 00 00 00 00 00 00"));
   EXPECT_EQ("01 97 01", bus.ask("01 17 10 00 00 02 00 00 00 02 04 00 00 13 88"));
-  EXPECT_EQ("01 83 02", bus.ask("01 03 1E 00 00 01"));  // no coil mirror
+  EXPECT_EQ("01 83 02", bus.ask("01 03 1E 00 00 01"));           // no coil mirror
   EXPECT_EQ("01 05 00 0D FF 00", bus.ask("01 05 00 0D FF 00"));  // input S8
   EXPECT_EQ("01 86 02", bus.ask("01 06 16 C8 00 00"));           // no P200
   EXPECT_EQ("", bus.ask("FA 05 00 00 FF 00"));                   // no groups
@@ -221,6 +221,6 @@ TEST(SimulatedRxFrames, scales)
   bus.command("m trip 14");
   EXPECT_EQ("01 03 06 00 0E 00 03 00 00", bus.ask("01 03 00 11 00 03"));
   const std::string block = bus.ask("01 03 00 14 00 03");
-  EXPECT_EQ("13 88", block.substr(9, 5));  // 50.00 Hz
+  EXPECT_EQ("13 88", block.substr(9, 5));                                                      // 50.00 Hz
   EXPECT_NEAR(325.0, std::stoi(block.substr(21, 2) + block.substr(24, 2), nullptr, 16), 5.0);  // whole volts
 }

@@ -149,7 +149,7 @@ struct Profile
   std::set<std::string> parities;
   std::set<unsigned> stop_bits;
 
-  /// Printed number of the register with wire address 0 (1 where the manual counts from 1, 0 where it prints addresses).
+  /// Printed number of the register with wire address 0: 1 where the manual counts from 1, 0 where it prints addresses.
   unsigned first_register = 0;
 
   std::set<unsigned> functions;

@@ -20,16 +20,16 @@ struct DriveOptions
 {
   std::string name;
   int station = 1;
-  LineSettings line;            ///< what the drive's serial parameters are set to
-  TimePoint start{};            ///< the drive is ready at this time
-  std::uint64_t seed = 1;       ///< of its chance
-  double turnaround = 0.002;    ///< [s] processing time after the 3.5-character silence, before the reply
-  double start_up_time = 1.0;   ///< [s] deaf after power-on
-  double reset_silence = 1.0;   ///< [s] deaf after a trip reset (LinuxCNC's wj200_vfd waits 1 s for that reason)
-  double eeprom_time = 0.3;     ///< [s] that storing parameters takes
-  double rated_current = 5.0;   ///< [A]
-  double rated_voltage = 230.0; ///< [V] of motor and mains
-  double load = 0.3;            ///< 1.0 = rated torque
+  LineSettings line;             ///< what the drive's serial parameters are set to
+  TimePoint start{};             ///< the drive is ready at this time
+  std::uint64_t seed = 1;        ///< of its chance
+  double turnaround = 0.002;     ///< [s] processing time after the 3.5-character silence, before the reply
+  double start_up_time = 1.0;    ///< [s] deaf after power-on
+  double reset_silence = 1.0;    ///< [s] deaf after a trip reset (LinuxCNC's wj200_vfd waits 1 s for that reason)
+  double eeprom_time = 0.3;      ///< [s] that storing parameters takes
+  double rated_current = 5.0;    ///< [A]
+  double rated_voltage = 230.0;  ///< [V] of motor and mains
+  double load = 0.3;             ///< 1.0 = rated torque
   /// After its watchdog stopped the motor without a trip (C076 = 3, 4) and the master is back with RUN still on: run again
   /// (true), or wait until RUN was off (false). The manuals don't say.
   bool restart_after_timeout = false;

@@ -78,11 +78,11 @@ private:
   {
     int code = 0;
     int state = 0;
-    double frequency = 0.0;  // [Hz]
-    double current = 0.0;    // [A]
-    double dc_voltage = 0.0; // [V]
-    double run_time = 0.0;   // [s]
-    double power_time = 0.0; // [s]
+    double frequency = 0.0;   // [Hz]
+    double current = 0.0;     // [A]
+    double dc_voltage = 0.0;  // [V]
+    double run_time = 0.0;    // [s]
+    double power_time = 0.0;  // [s]
   };
 
   /// A read-only register (or pair) and where its raw value comes from.
@@ -158,7 +158,8 @@ private:
   ParameterMemory memory_;
   Motor motor_;
   CommWatchdog watchdog_;
-  std::unordered_map<std::uint16_t, std::pair<std::uint16_t, Monitor>> monitors_;  // by register; first = start register
+  std::unordered_map<std::uint16_t, std::pair<std::uint16_t, Monitor>>
+      monitors_;  // by register; first = start register
 
   std::array<bool, 16> coils_{};  // by printed number, 0001h-000Eh
   std::uint32_t reference_ = 0;   // F001 [0.01 Hz]
@@ -182,8 +183,8 @@ private:
 
   struct Codes
   {
-    Index f002, f003, a001, a002, a003, a004, a020, a061, a062, b012, b031, b035, b082, b086, b087, b091, c041, c042, c043,
-        c063, c071, c072, c074, c075, c076, c077, c078;
+    Index f002, f003, a001, a002, a003, a004, a020, a061, a062, b012, b031, b035, b082, b086, b087, b091, c041, c042,
+        c043, c063, c071, c072, c074, c075, c076, c077, c078;
   };
   Codes code_{};
   std::vector<Index> input_functions_;  // C001 ...

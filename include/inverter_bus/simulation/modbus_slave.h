@@ -65,7 +65,8 @@ protected:
 
   virtual ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values) = 0;
   virtual ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values) = 0;
-  virtual ModbusException readRegisters(std::uint16_t wire, std::uint16_t count, std::vector<std::uint16_t>& values) = 0;
+  virtual ModbusException readRegisters(std::uint16_t wire, std::uint16_t count,
+                                        std::vector<std::uint16_t>& values) = 0;
   /// @param function 06h, 10h or 17h, for drives that tell them apart
   virtual ModbusException writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
                                          std::uint8_t function) = 0;

@@ -58,9 +58,9 @@ struct FrameRecord
   };
   TimePoint time;  ///< start of its first byte
   Source source = Source::MASTER;
-  std::string drive;  ///< who sent it, if a drive
-  Bytes bytes;        ///< as on the wire: damage included
-  std::string remark; ///< "lost: gap", "damaged: collision", ...; empty: all well
+  std::string drive;   ///< who sent it, if a drive
+  Bytes bytes;         ///< as on the wire: damage included
+  std::string remark;  ///< "lost: gap", "damaged: collision", ...; empty: all well
 };
 
 struct LineCounters
@@ -139,13 +139,13 @@ private:
     FrameRecord::Source source = FrameRecord::Source::MASTER;
     SimulatedDrive* drive = nullptr;
     std::vector<WireByte> bytes;
-    bool for_master = true;        // comes out at the master's end
-    std::size_t delivered = 0;     // bytes of it that did
-    bool early = false;            // came before the gap
-    bool joined = false;           // began as one frame and went on as the next
+    bool for_master = true;     // comes out at the master's end
+    std::size_t delivered = 0;  // bytes of it that did
+    bool early = false;         // came before the gap
+    bool joined = false;        // began as one frame and went on as the next
     bool collided = false;
-    bool served = false;           // a request: the drives have had it
-    bool over = false;             // nothing more to do
+    bool served = false;  // a request: the drives have had it
+    bool over = false;    // nothing more to do
   };
 
   struct Owed

@@ -350,7 +350,7 @@ class LiveTable:
         self.top = top
         self.start = time.monotonic()
         self.title = ''
-        self.events = collections.deque(maxlen=8)
+        self.events = collections.deque(maxlen=20)
         self.lock = threading.Lock()
         self.unicode = 'utf' in (sys.stdout.encoding or '').lower()
         self.closed = threading.Event()
@@ -398,7 +398,7 @@ class LiveTable:
         bar = max(8, min(30, columns - 74))
         body = [self.paint('bold', fit(' inverter_bus  %s  %s' % (self.clock(), self.line.bus), columns)), '']
         body += [' %s %s' % (self.paint('cyan', self.sign('▶', '>')), self.paint('bold', fit(title, columns - 4))), '']
-        head = ' %-16s %-9s %-*s %9s %9s %8s  %s' % ('belt', 'state', bar + 2, 'velocity', 'commanded', 'actual',
+        head = ' %-16s %-9s %-*s %9s %9s %8s  %s' % ('belt', 'state', bar, 'velocity', 'commanded', 'actual',
                                                     'current', 'fault')
         body.append(self.paint('grey', fit(head, columns)))
         body += [self.belt_line(belt, bar, columns) for belt in self.line.belts]
@@ -440,10 +440,10 @@ class LiveTable:
         """A bar; eighths of a character where the terminal has them."""
         share = min(1.0, max(0.0, share))
         if not self.unicode:
-            return '[' + ('#' * int(share * width)).ljust(width) + ']'
+            return ('#' * int(share * width)).ljust(width, '.')
         eighths = int(round(share * width * 8))
         text = '█' * (eighths // 8) + ('', '▏', '▎', '▍', '▌', '▋', '▊', '▉')[eighths % 8]
-        return '▕' + text.ljust(width) + '▏'
+        return text.ljust(width, '·')
 
     def paint(self, colour, text):
         return '\x1b[%sm%s\x1b[0m' % (self.COLOURS[colour], text)

@@ -258,7 +258,7 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
     case Pick::What::Refresh:
       current.purpose = Purpose::Refresh;
       current.request = inverter.prepared(
-          inverter.drive.read(inverter.config.node, inverter.refresh.next(now, scheduler_->cycleTime())));
+          inverter.drive.read(inverter.config.node, inverter.refresh.next(now)));
       return current;
     case Pick::What::Probe:
       return composeProbe(pick);

@@ -11,7 +11,7 @@ namespace bus
 namespace
 {
 constexpr double OLDEST_SLOW_VALUE_S = 1.0;
-// A slow value is read again when it would be too old at the next refresh; only one goes per refresh, so they stagger.
+// A slow value is read again in the refresh whose status it would be too old for; one goes per refresh, so they stagger.
 constexpr double SLOW_MARGIN_S = 0.1;
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
@@ -120,13 +120,13 @@ Refresh::Refresh(const drive::Drive& drive, std::uint8_t station) : drive_(drive
   add(drive.fastBlocks(), Class::Fast);
 }
 
-void Refresh::plan(TimePoint now, Duration cycle_time)
+void Refresh::plan(TimePoint now)
 {
   plan_.clear();
   position_ = 0;
   fault_planned_ = false;
   scratch_ = drive::Monitor();
-  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S) - cycle_time;
+  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
   bool slow_planned = false;
   for (std::size_t step = 0; step < blocks_.size() && has_stamp_; ++step)
   {
@@ -155,11 +155,11 @@ void Refresh::plan(TimePoint now, Duration cycle_time)
   }
 }
 
-const drive::ReadBlock& Refresh::next(TimePoint now, Duration cycle_time)
+const drive::ReadBlock& Refresh::next(TimePoint now)
 {
   if (position_ >= plan_.size())
   {
-    plan(now, cycle_time);
+    plan(now);
   }
   return blocks_[plan_[position_]].read;
 }

@@ -18,12 +18,6 @@ namespace ros_node
 {
 namespace
 {
-bool isIgnored(int signal)
-{
-  struct sigaction action = {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
 const char* nameOf(std::uint32_t signal)
 {
   switch (signal)
@@ -43,11 +37,8 @@ Signals::Signals()
   sigemptyset(&signals_);
   sigaddset(&signals_, SIGINT);
   sigaddset(&signals_, SIGTERM);
-  // nohup(1) asks to live on. (A shell that ignores SIGINT for its background jobs asks for nothing.)
-  if (!isIgnored(SIGHUP))
-  {
-    sigaddset(&signals_, SIGHUP);
-  }
+  // Also where the parent had them ignored (nohup, background jobs of a shell): a blocked signal is kept for signalfd.
+  sigaddset(&signals_, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
   file_ = signalfd(-1, &signals_, SFD_CLOEXEC | SFD_NONBLOCK);
   wake_ = eventfd(0, EFD_CLOEXEC);

@@ -130,7 +130,7 @@ void play()
   std::thread line([&] {
     try
     {
-      runner.run();
+      runner.run(ros::param::param("~realtime_priority", 0));
     }
     catch (...)
     {

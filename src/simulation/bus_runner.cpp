@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -99,8 +100,14 @@ int BusRunner::waitTime(long& nanoseconds) const
   return static_cast<int>(std::chrono::duration_cast<std::chrono::seconds>(wait).count());
 }
 
-void BusRunner::run()
+void BusRunner::run(int realtime_priority)
 {
+  if (realtime_priority > 0)
+  {
+    sched_param parameters{};
+    parameters.sched_priority = realtime_priority;
+    pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);  // without the right to it: goes on as it is
+  }
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // of this thread: wake up when asked, not 50 us later
   while (!stop_)
   {

@@ -18,7 +18,7 @@ constexpr bool STOP = false;  // only at rest
 constexpr std::uint32_t W1 = 0xFFFF;      // range unknown: whatever the register holds
 constexpr std::uint32_t W2 = 0xFFFFFFFF;  // the same for two registers
 
-// Range and resolution: S = seen in a source, M = from memory (fact sheet, 3.2). Numbers are the printed ones.
+// Range and resolution: S = seen in a source, M = from memory. Numbers are the printed ones.
 const std::vector<Parameter> COMMON = {
   // F: ramps. Unit S, range M
   { "F002", 0x1103, 2, 2, 1, 360000, 1000, RUN, 0 },

@@ -12,8 +12,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// Parameter tables, written down from the manuals' register lists (MX2-SYS and I570 appendix B; SJ700a appendix B; what only
-/// the public driver PYMX2 names is taken from there). Ranges marked M in the source are from memory.
+/// Parameter tables, written down from the manuals' register lists (MX2-SYS and I570 appendix B; SJ700a appendix B;
+/// what only the public driver PYMX2 names is taken from there). Ranges marked M in the source are from memory.
 std::vector<Parameter> mx2Parameters();
 std::vector<Parameter> rxParameters();
 }  // namespace simulation

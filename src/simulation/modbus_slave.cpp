@@ -208,7 +208,7 @@ ModbusException ModbusSlave::executeWriteCoil(const Bytes& frame, Bytes& reply)
 ModbusException ModbusSlave::executeWriteCoils(const Bytes& frame, Bytes& reply)
 {
   const std::uint16_t count = modbusWord(frame, 4);
-  // More data bytes than the coils need are accepted: a real MX2 took 2 bytes for 5 coils (drives/omron_mx2_rx.md 7).
+  // More data bytes than the coils need are accepted: a real MX2 took 2 bytes for 5 coils.
   if (count == 0 || count > limits_.coils || frame[6] * 8U < count)
   {
     return ModbusException::FORMAT_NOT_ACCEPTABLE;

@@ -48,6 +48,7 @@ po::options_description describeOptions()
       ("parity", po::value<std::string>(), "none | even | odd instead of the file's")                               //
       ("stop-bits", po::value<int>(), "1 | 2 instead of the file's")                                                //
       ("seed", po::value<std::uint64_t>()->default_value(1), "of everything that is left to chance")                //
+      ("realtime-priority", po::value<int>()->default_value(0), "> 0: SCHED_FIFO, for a punctual wire")             //
       ("turnaround", po::value<double>(), "[s] answer time of all drives after the silence");
   return options;
 }
@@ -142,7 +143,7 @@ void play(const po::variables_map& values)
   runner.readCommands(STDIN_FILENO, [](const std::string& answer) { std::cout << answer << std::endl; });
   std::cout << "simulated bus ready: " << link << " -> " << runner.terminal().path() << ", " << bus.drives().size()
             << " drives" << std::endl;
-  runner.run();
+  runner.run(values["realtime-priority"].as<int>());
   runner_to_stop = nullptr;
   const LineCounters& counters = bus.line().counters();
   std::cout << "simulated bus stopped: " << counters.requests << " requests, " << counters.replies << " replies, "

@@ -3,6 +3,7 @@
 import os
 import unittest
 
+import roslib.packages
 import rostest
 import rospy
 from harness import Bench, belts, init
@@ -18,8 +19,11 @@ class Configuration(unittest.TestCase):
         with open(cls.broken_profile, 'w') as stream:
             stream.write('name: broken\ntitle: [not closed\nprotocol: modbus_rtu\n')
         cls.wrong_profile = os.path.join(cls.bench.directory, 'wrong.yaml')
+        with open(os.path.join(roslib.packages.get_pkg_dir('inverter_bus'), 'config/drives/omron_mx2.yaml')) as stream:
+            good = stream.read()
+        cls.wrong_place = '%s:%d' % (cls.wrong_profile, good.count('\n') + 1)
         with open(cls.wrong_profile, 'w') as stream:
-            stream.write('name: wrong\nno_such_section: 1\n')
+            stream.write(good + 'no_such_section: 1\n')
 
     @classmethod
     def tearDownClass(cls):
@@ -72,7 +76,7 @@ class Configuration(unittest.TestCase):
         self.assertEntryEndsNaming(['drive', 'no_such_drive', 'omron_mx2'], drive='no_such_drive')
         self.assertEntryEndsNaming(['/no/such/file.yaml'], drive='/no/such/file.yaml')
         self.assertEntryEndsNaming([self.broken_profile + ':'], drive=self.broken_profile)
-        self.assertEntryEndsNaming([self.wrong_profile + ':2', 'no_such_section'], drive=self.wrong_profile)
+        self.assertEntryEndsNaming([self.wrong_place, 'no_such_section'], drive=self.wrong_profile)
 
     def testLineSettingsThatPortOrDriveCannotUse(self):
         self.assertEndsNaming(['baud_rate', '12345'], baud_rate=12345)

@@ -247,7 +247,7 @@ class Bench:
             rospy.delete_param(self.driver_name)
         rospy.set_param(self.driver_name, parameters)
         if not self.inverters:
-            self.listen(parameters['scan_list'])
+            self.listen(parameters.get('scan_list'))
         self.driver = self.start('inverter_bus_node', '__name:=' + self.driver_name[1:])
         if online:
             for inverter in self.inverters.values():

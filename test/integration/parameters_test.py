@@ -30,10 +30,6 @@ class Parameters(unittest.TestCase):
         self.assertAlmostEqual(answer.value, 12.34)
         self.assertEqual(answer.unit, 's')
 
-    def testCodesMayBeWrittenSmall(self):
-        self.bench.simulate('belt_1 set F003 7.5')
-        self.assertAlmostEqual(self.belt.read_parameter('f003').value, 7.5)
-
     def testReadsByTheNumberInTheManual(self):
         answer = self.belt.read_parameter('0x1201')
         self.assertTrue(answer.success, answer.message)

@@ -65,10 +65,11 @@ class StopAndLock(unittest.TestCase):
         belt = self.bench['belt_2']
         stream = self.run_belt('belt_2', 20.0)
         stream.end()
-        self.assertTrue(belt.stop().success)
         stopped = time.monotonic()
+        self.assertTrue(belt.stop().success)
+        belt.wait(lambda s: s.locked, 'locked')
         belt.wait(lambda s: not s.locked, 'unlocked by silence')
-        self.assertGreater(time.monotonic() - stopped, 0.35)
+        self.assertGreater(time.monotonic() - stopped, 0.45)
         belt.send(15.0)
         belt.wait(lambda s: s.run_command, 'runs again')
 
@@ -82,7 +83,8 @@ class StopAndLock(unittest.TestCase):
         other = self.bench.start('velocity_once.py', belt.path + '/command', '0.0')
         self.assertEqual(other.wait(), 0, other.log())
         belt.fresh()
-        stays(lambda: belt.status.locked and not self.bench.turns('belt_1'), 'still locked for the stream', 0.5)
+        stays(lambda: belt.status.error_id == InverterStatus.ERROR_LOCKED and not self.bench.turns('belt_1'),
+              'the stream is refused as before', 0.7)
 
     def testModesThatTheDriveLacksDecelerate(self):
         belt = self.bench['belt_3']
@@ -104,30 +106,39 @@ class StopAndLock(unittest.TestCase):
             self.bench[name].wait(lambda s: s.locked and not s.running, 'locked and at rest')
 
     def testAStopGoesBeforeAStormOfParameterReads(self):
-        self.run_belt('belt_1', 30.0)
+        """On a driver of its own, whose longest stop latency no other test has made."""
+        bench = Bench(belts(4))
+        try:
+            bench.start_driver()
+            with bench.run('belt_1', 30.0):
+                self.storm(bench)
+            wait_for(lambda: bench.bus_status.stop_latency_max > 0.0, 'a stop latency')
+            # At most the one exchange in flight, and a busy machine.
+            self.assertLess(bench.bus_status.stop_latency_max, 0.12)
+        finally:
+            bench.close()
+
+    def storm(self, bench):
+        """Ten stops while twelve threads read parameters as fast as they can."""
         ended = threading.Event()
 
-        def storm(name):
+        def read(name):
             while not ended.is_set():
-                self.bench[name].read_parameter('F002')
+                bench[name].read_parameter('F002')
 
-        threads = [threading.Thread(target=storm, args=('belt_%d' % (n % 4 + 1),), daemon=True) for n in range(12)]
+        threads = [threading.Thread(target=read, args=('belt_%d' % (n % 4 + 1),), daemon=True) for n in range(12)]
         for thread in threads:
             thread.start()
         try:
-            wait_for(lambda: self.bench.bus_status.utilization > 0.7, 'a busy line')
+            wait_for(lambda: bench.bus_status.utilization > 0.7, 'a busy line')
             for _ in range(10):
-                answer = self.bench['belt_1'].stop()
+                answer = bench['belt_1'].stop()
                 self.assertTrue(answer.success, answer.message)
-                self.assertEqual(self.bench.real('belt_1')['run_coil'], '0')
+                self.assertEqual(bench.real('belt_1')['run_coil'], '0')
         finally:
             ended.set()
             for thread in threads:
                 thread.join(30.0)
-        # One exchange may be in flight: 16 registers at 19200 baud, gaps and the drive's own time.
-        self.bench.bus_messages.clear()
-        wait_for(lambda: self.bench.bus_status, 'a bus status')
-        self.assertLess(self.bench.bus_status.stop_latency_max, 0.15)
 
     def testAStopCancelsAVelocityThatWaits(self):
         belt = self.bench['belt_4']

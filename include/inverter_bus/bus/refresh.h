@@ -24,8 +24,8 @@ class Refresh
 public:
   Refresh(const drive::Drive& drive, std::uint8_t station);
 
-  /// The read that is due; starts a new refresh when none is under way. \p cycle_time tells how soon the next one comes.
-  const drive::ReadBlock& next(TimePoint now, Duration cycle_time);
+  /// The read that is due; starts a new refresh when none is under way.
+  const drive::ReadBlock& next(TimePoint now);
 
   /// The answer to next(). Returns true when the refresh needs another exchange.
   bool received(const wire::Reply& reply);
@@ -66,7 +66,7 @@ private:
     TimePoint left_out_until;
     drive::Monitor values;
   };
-  void plan(TimePoint now, Duration cycle_time);
+  void plan(TimePoint now);
   void planFaultReads();
   bool advance();
 

@@ -14,8 +14,8 @@ namespace simulation
 {
 class SimulatedBus;
 
-/// Runs one command of the text grammar that standard input and the ROS service share. Words are separated by blanks; times
-/// are seconds. `#` starts a comment.
+/// Runs one command of the text grammar that standard input and the ROS service share. Words are separated by blanks;
+/// times are seconds. `#` starts a comment.
 ///
 ///     help | list                        what there is
 ///     bus show                           counters of the line, key=value
@@ -24,16 +24,16 @@ class SimulatedBus;
 ///     bus echo on|off                    the adapter gives the master its own bytes back
 ///     bus silent on|off|S                the line between master and drives is cut (for S)
 ///     bus noise [N]                      N random bytes (8) at once
-///     bus foreign HEX... [now] [raw]     a second master's request (CRC is added, unless raw) when the line is free, or now
+///     bus foreign HEX... [now] [raw]     a second master's request when the line is free, or now; CRC added unless raw
 ///     bus reset                          counters back to 0
 ///
 ///     NAME show                          what drive and motor really do, key=value
 ///     NAME get CODE | NAME set CODE X    a parameter, in the panel's unit; set: as at the panel (RAM and EEPROM)
 ///     NAME offline [S] | NAME online     cut off the bus; it runs on
 ///     NAME trip N                        trip E N
-///     NAME damaged | truncated [BYTES] | noise [BYTES] | late S | foreign [station|shape] | exception N | lost_request |
-///          lost_reply                    spoils the next exchange; with `count N` the next N, `count 0` all, `for S` all within
-///                                        S, `function F` only those with that function code (decimal or 0x..)
+///     NAME damaged | truncated [BYTES] | noise [BYTES] | late S | foreign [station|shape] | exception N |
+///          lost_request | lost_reply     spoils the next exchange; `count N`: the next N, `count 0`: all,
+///                                        `for S`: all within S, `function F`: only that function code (or 0x..)
 ///     NAME clear                         takes back what waits
 ///     NAME busy S                        EEPROM write in progress for S
 ///     NAME power_cycle [S]               no power, and deaf, for S in all (without S: 2 s, then the start-up time)

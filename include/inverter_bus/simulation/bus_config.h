@@ -37,9 +37,9 @@ struct BusConfig
   std::vector<DriveConfig> drives;  ///< in the order of the list
 };
 
-/// Reads the driver's own parameters file: `baud_rate`, `parity`, `data_bits`, `stop_bits`, `defaults` and `scan_list` (a list,
-/// or a bit mask as integer or string: 0x.. or #..) count here, other keys of the driver are passed over. An optional
-/// top-level map `simulation` says more about the simulated drives, by name:
+/// Reads the driver's own parameters file: `baud_rate`, `parity`, `data_bits`, `stop_bits`, `defaults` and `scan_list`
+/// (a list, or a bit mask as integer or string: 0x.. or #..) count here, other keys of the driver are passed over. An
+/// optional top-level map `simulation` says more about the simulated drives, by name:
 ///
 ///     simulation:
 ///       belt_1: {model: omron_mx2, parameters: {C077: 1.0}, turnaround: 0.005, start_up_time: 1.0, reset_silence: 1.0,

@@ -15,8 +15,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// Plays a bus on a pseudo-terminal in real time (steady clock). run() blocks in one thread; command() may be called from any
-/// other; stop() also from a signal handler.
+/// Plays a bus on a pseudo-terminal in real time (steady clock). run() blocks in one thread; command() may be called
+/// from any other; stop() also from a signal handler.
 class BusRunner
 {
 public:
@@ -31,8 +31,8 @@ public:
   /// @param answer gets the answer to each command
   void readCommands(int descriptor, std::function<void(const std::string&)> answer);
 
-  /// Returns after stop().
-  void run();
+  /// Returns after stop(). @param realtime_priority > 0: SCHED_FIFO for the calling thread, where that is permitted
+  void run(int realtime_priority = 0);
   void stop() noexcept;
   std::string command(const std::string& line);
   const PseudoTerminal& terminal() const;

@@ -12,8 +12,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// A drive's own supervision of the communication. It starts with the first good request after power-on or reset (SJ700b
-/// p. 187), so a master that never speaks causes nothing; every further good request restarts it.
+/// A drive's own supervision of the communication. It starts with the first good request after power-on or reset
+/// (SJ700b p. 187), so a master that never speaks causes nothing; every further good request restarts it.
 class CommWatchdog
 {
 public:

@@ -30,11 +30,11 @@ struct DriveOptions
   double rated_current = 5.0;    ///< [A]
   double rated_voltage = 230.0;  ///< [V] of motor and mains
   double load = 0.3;             ///< 1.0 = rated torque
-  /// After its watchdog stopped the motor without a trip (C076 = 3, 4) and the master is back with RUN still on: run again
-  /// (true), or wait until RUN was off (false). The manuals don't say.
+  /// After its watchdog stopped the motor without a trip (C076 = 3, 4) and the master is back with RUN still on: run
+  /// again (true), or wait until RUN was off (false). The manuals don't say.
   bool restart_after_timeout = false;
-  /// The coils for external trip and reset fall back by themselves (true) or stay as written (false). The manuals don't say;
-  /// LinuxCNC's wj200_vfd writes them on only.
+  /// The coils for external trip and reset fall back by themselves (true) or stay as written (false). The manuals don't
+  /// say; LinuxCNC's wj200_vfd writes them on only.
   bool self_clearing_coils = false;
   std::map<std::string, double> parameters;  ///< as set at the panel, in the panel's unit: { "C077", 1.0 }
 };

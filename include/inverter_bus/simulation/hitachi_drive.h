@@ -29,13 +29,14 @@ namespace simulation
 /// HitachiModel). It is commissioned for the bus: A001 = A002 = 03 and serial parameters that fit the line; everything
 /// else is as from the factory.
 ///
-/// Where the manuals are silent: A001, A002 and C076-C078 take effect at once, C071-C075 and C072 after a power cycle; only
-/// requests to this station and broadcasts feed the watchdog; reset and external trip act on the coil's rising edge.
+/// Where the manuals are silent: A001, A002 and C076-C078 take effect at once, C071-C075 and C072 after a power cycle;
+/// only requests to this station and broadcasts feed the watchdog; reset and external trip act on the coil's rising
+/// edge.
 class HitachiDrive : public ModbusSlave
 {
 public:
-  /// @throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate or station that the
-  /// drive doesn't have; the text names it
+  /// @throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate or station that
+  /// the drive doesn't have; the text names it
   HitachiDrive(const HitachiModel& model, const DriveOptions& options);
 
   Refusal trip(int code, TimePoint now) override;

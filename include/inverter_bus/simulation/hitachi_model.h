@@ -16,7 +16,7 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// In what two drives of the Hitachi family differ. Keys of the sources as in the fact sheet of the MX2 and RX:
+/// In what two drives of the Hitachi family differ. Keys of the sources:
 /// I585 = OMRON 3G3MX2-V1 manual, MX2-SYS = SYSDRIVE MX2 manual chapter 6, I578 = OMRON 3G3RX-V1 manual,
 /// SJ700a = Hitachi SJ700-2 appendix B, PYMX2 = public Python driver made from I570, SEED = OMRON INV003.
 struct HitachiModel

@@ -15,8 +15,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// Exception codes. 01-03: Modbus Application Protocol V1.1b3, 7; 21h-23h: I578 and MX2-SYS (drives/omron_mx2_rx.md 4.2);
-/// 26h: SJ700D. A brand with others casts its number.
+/// Exception codes. 01-03: Modbus Application Protocol V1.1b3, 7; 21h-23h: OMRON I578 and
+/// the MX2 manual's chapter 6; 26h: Hitachi SJ700D. A brand with others casts its number.
 enum class ModbusException : std::uint8_t
 {
   NONE = 0x00,
@@ -39,8 +39,8 @@ struct ModbusLimits
   std::uint16_t write_registers = 0;           ///< most registers of one write
 };
 
-/// A Modbus RTU slave: check sum, lengths, function codes and limits; a brand adds its coils and registers. Addresses are
-/// those of the frame ("wire"), not the printed numbers.
+/// A Modbus RTU slave: check sum, lengths, function codes and limits; a brand adds its coils and registers. Addresses
+/// are those of the frame ("wire"), not the printed numbers.
 class ModbusSlave : public SimulatedDrive
 {
 public:

@@ -25,8 +25,8 @@ struct MotorRating
   double frequency = 50.0;  ///< [Hz] base frequency
 };
 
-/// Output stage of an inverter with a motor and its load: frequency on ramps, and plausible figures for current, torque,
-/// voltages and temperature that follow from frequency, load and ramp. Deterministic; time comes in as steps.
+/// Output stage of an inverter with a motor and its load: frequency on ramps, and plausible figures for current,
+/// torque, voltages and temperature that follow from frequency, load and ramp. Deterministic; time comes in as steps.
 class Motor
 {
 public:

@@ -28,8 +28,8 @@ struct Parameter
   std::uint32_t allowed = 0;   ///< bit n: value n is allowed (0: all of minimum ... maximum)
 };
 
-/// RAM and EEPROM of a drive's parameters. A write by the bus reaches the RAM; storing copies what was changed to the EEPROM
-/// and counts it; a power cycle brings the EEPROM's values back.
+/// RAM and EEPROM of a drive's parameters. A write by the bus reaches the RAM; storing copies what was changed to the
+/// EEPROM and counts it; a power cycle brings the EEPROM's values back.
 class ParameterMemory
 {
 public:

@@ -12,8 +12,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// A raw pseudo-terminal with a link to it, which stands for the serial port of an adapter. The far side is kept open here
-/// too, so that a client that closes doesn't hang it up. Not for several threads at once.
+/// A raw pseudo-terminal with a link to it, which stands for the serial port of an adapter. The far side is kept open
+/// here too, so that a client that closes doesn't hang it up. Not for several threads at once.
 class PseudoTerminal
 {
 public:

@@ -22,7 +22,12 @@ namespace simulation
 ///
 ///     SimulatedBus bus(config, LineOptions(), start);
 ///     bus.send(request, now);
-///     while (auto next = bus.nextEvent()) { now = *next; bus.advance(now); for (auto& delivery : bus.takeOutput(now)) ... }
+///     while (auto next = bus.nextEvent())
+///     {
+///       now = *next;
+///       bus.advance(now);
+///       for (const Delivery& delivery : bus.takeOutput(now)) ...
+///     }
 ///     bus.command("belt_1 trip 12", now);
 ///
 /// Not for several threads at once.

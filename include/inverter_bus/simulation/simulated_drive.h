@@ -43,9 +43,9 @@ struct ExchangeCounters
 using Refusal = std::optional<std::string>;
 using KeyValues = std::vector<std::pair<std::string, std::string>>;
 
-/// One drive on the bus with its motor: answers request frames, moves its motor and its timers as time goes on, and can be
-/// operated "by hand" (panel, mains switch, load). Time comes in as an argument only and must never go back; chance comes
-/// from the seed only. Not for several threads at once.
+/// One drive on the bus with its motor: answers request frames, moves its motor and its timers as time goes on, and can
+/// be operated "by hand" (panel, mains switch, load). Time comes in as an argument only and must never go back; chance
+/// comes from the seed only. Not for several threads at once.
 ///
 /// Derive from it for a protocol (ModbusSlave) and from that for a brand (HitachiDrive).
 class SimulatedDrive

@@ -33,8 +33,8 @@ struct LineOptions
   LineSettings settings;
   GapRule gap = GapRule::ENFORCE;
   Duration gap_tolerance = std::chrono::microseconds(300);  ///< a request may come this much early
-  /// Bytes for the master come out together for as long as this, never before their time; zero: a frame in one piece at its
-  /// end (fastest, for virtual time).
+  /// Bytes for the master come out together for as long as this, never before their time; zero: a frame in one piece at
+  /// its end (fastest, for virtual time).
   Duration delivery_step = Duration::zero();
   std::uint64_t seed = 1;
 };
@@ -74,19 +74,20 @@ struct LineCounters
   std::uint64_t foreign = 0;     ///< frames of the second master
 };
 
-/// An RS-485 line with drives on it, one master and, at will, a second one; event driven, in the time that is passed in.
+/// An RS-485 line with drives on it, one master and, at will, a second one; event driven, in the time that is passed
+/// in.
 ///
 /// - Each byte occupies the wire for start + data + parity + stop bits; bytes handed over together follow back to back.
 /// - A frame ends with 3.5 characters of silence; then the drives get it, and the answering one starts after its delay.
 /// - Two transmissions at once damage each other's bytes where they overlap.
 /// - A request that comes before the line was silent for 3.5 characters is lost (GapRule).
 ///
-/// **The gap in real time.** A process is woken late, never early. What the master writes is stamped when it is read, so its
-/// stamp is late or right. What the master reads it can have seen no earlier than it was handed over; that, not the ideal
-/// end of the byte on the wire, is what takeOutput() takes as the end of the line's activity: a master that reads
-/// the last byte late and then waits its 3.5 characters is always in time, one that doesn't wait is found out however
-/// late this process was. `gap_tolerance` covers the granularity of the master's own timer and a late stamp on a frame that
-/// nobody answers (after it the master waits far longer anyway).
+/// **The gap in real time.** A process is woken late, never early. What the master writes is stamped when it is read,
+/// so its stamp is late or right. What the master reads it can have seen no earlier than it was handed over; that, not
+/// the ideal end of the byte on the wire, is what takeOutput() takes as the end of the line's activity: a master that
+/// reads the last byte late and then waits its 3.5 characters is always in time, one that doesn't wait is found out
+/// however late this process was. `gap_tolerance` covers the granularity of the master's own timer and a late stamp on
+/// a frame that nobody answers (after it the master waits far longer anyway).
 ///
 /// Not for several threads at once.
 class SimulatedLine

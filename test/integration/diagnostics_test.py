@@ -71,6 +71,16 @@ class Diagnostics(unittest.TestCase):
             self.bench.simulate('bus plug')
         self.wait_level('belt_1', DiagnosticStatus.OK)
 
+    def testAMotorThatRunsWithoutOurRunWarns(self):
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+        self.bench.simulate('belt_1 panel 15')
+        try:
+            self.wait_level('belt_1', DiagnosticStatus.WARN)
+            self.assertTrue(self.bench.turns('belt_1'), 'left alone without stop_unexpected_motion')
+        finally:
+            self.bench.simulate('belt_1 panel_release')
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
     def testASecondMasterWarns(self):
         self.bench.simulate('bus foreign 01 03 00 00 00 02')
         self.wait_level('bus', DiagnosticStatus.WARN, 'master')

@@ -70,10 +70,9 @@ public:
     return granted;
   }
 
-  void stopAndConfirm(int requested, int confirmed)
+  void stopAndConfirm(int confirmed)
   {
     interlock.stopRequested();
-    static_cast<void>(requested);
     interlock.stopConfirmed(at(confirmed));
   }
 
@@ -153,7 +152,7 @@ TEST(Interlock, laterStatusesDoNotStartTheSilenceAgain)
 TEST(Interlock, silenceLastsAtLeastHalfASecond)
 {
   Running belt(0.1);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.interlock.judge(at(1699), publisher()), Permission::Locked);
   EXPECT_EQ(belt.interlock.judge(at(1700), publisher()), Permission::Granted);
 }
@@ -161,7 +160,7 @@ TEST(Interlock, silenceLastsAtLeastHalfASecond)
 TEST(Interlock, silenceLastsAtLeastTheCommandTimeout)
 {
   Running belt(2.0);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.interlock.judge(at(3199), publisher()), Permission::Locked);
   EXPECT_EQ(belt.interlock.judge(at(3200), publisher()), Permission::Granted);
 }
@@ -170,7 +169,7 @@ TEST(Interlock, silenceLastsTwiceTheSpacingOfTheLastCommands)
 {
   Running belt(0.0);
   belt.command(2500);
-  belt.stopAndConfirm(2600, 2700);
+  belt.stopAndConfirm(2700);
   EXPECT_EQ(belt.interlock.judge(at(5699), publisher()), Permission::Locked);
   EXPECT_EQ(belt.interlock.judge(at(5700), publisher()), Permission::Granted);
 }
@@ -179,7 +178,7 @@ TEST(Interlock, silenceForASlowStreamLastsFiveSecondsAtMost)
 {
   Running belt(0.0);
   belt.command(21000);
-  belt.stopAndConfirm(21100, 21200);
+  belt.stopAndConfirm(21200);
   EXPECT_EQ(belt.interlock.judge(at(26199), publisher()), Permission::Locked);
   EXPECT_EQ(belt.interlock.judge(at(26200), publisher()), Permission::Granted);
 }
@@ -188,7 +187,7 @@ TEST(Interlock, streamOfOneCommandInTwoSecondsStaysRefused)
 {
   Running belt(0.0);
   belt.stream(3000, 10000, 2000);
-  belt.stopAndConfirm(9100, 9200);
+  belt.stopAndConfirm(9200);
   EXPECT_EQ(belt.stream(11000, 120000, 2000), 0);
 }
 
@@ -205,7 +204,7 @@ TEST(Interlock, silenceCountsFromTheConfirmationAndNotFromTheRequest)
 TEST(Interlock, everyRefusedCommandStartsTheSilenceAgain)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.command(1600), Permission::Locked);
   EXPECT_EQ(belt.interlock.judge(at(1700), publisher()), Permission::Locked);
 }
@@ -216,14 +215,14 @@ TEST(Interlock, streamThatGoesOnAfterAStopIsRefused)
 {
   Running belt;
   belt.stream(1100, 2000, 100);
-  belt.stopAndConfirm(2010, 2050);
+  belt.stopAndConfirm(2050);
   EXPECT_EQ(belt.stream(2100, 60000, 100), 0);
 }
 
 TEST(Interlock, streamIsGrantedAgainAfterItsZero)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.command(1300), Permission::Locked);
   belt.zero(1400);
   EXPECT_EQ(belt.stream(1500, 3000, 100), 15);
@@ -233,7 +232,7 @@ TEST(Interlock, zeroFromBeforeTheStopDoesNotUnlock)
 {
   Running belt;
   belt.zero(1050);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.command(1300), Permission::Locked);
 }
 
@@ -242,7 +241,7 @@ TEST(Interlock, zeroUnlocksOnlyThePublisherThatSentIt)
   Running belt;
   const Publisher other = publisher("/joystick");
   belt.command(1010, other);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.zero(1250, other);
   EXPECT_EQ(belt.command(1300), Permission::Locked);
   EXPECT_EQ(belt.command(1310, other), Permission::Granted);
@@ -253,7 +252,7 @@ TEST(Interlock, acceptedCommandOfOnePublisherDoesNotAdmitAnother)
 {
   Running belt;
   const Publisher other = publisher("/joystick");
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.zero(1250, other);
   for (int time = 1300; time < 10000; time += 100)
   {
@@ -265,7 +264,7 @@ TEST(Interlock, acceptedCommandOfOnePublisherDoesNotAdmitAnother)
 TEST(Interlock, zeroOnOneTopicUnlocksItsPublisherOnBoth)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.zero(1250, publisher("/planner", "/bus/command"));
   EXPECT_EQ(belt.command(1300, publisher("/planner", "/bus/belt/command")), Permission::Granted);
 }
@@ -293,9 +292,9 @@ TEST(Interlock, commandsDuringAPendingStopAreRefusedAsCancelled)
 TEST(Interlock, secondStopLocksAgain)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.zero(1300);
-  belt.stopAndConfirm(1400, 1450);
+  belt.stopAndConfirm(1450);
   EXPECT_EQ(belt.command(1500), Permission::Locked);
 }
 
@@ -303,7 +302,7 @@ TEST(Interlock, isShownFreeOnceSomebodyHasReturnedToNeutral)
 {
   Running belt;
   EXPECT_FALSE(belt.interlock.locked(at(1000)));
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_TRUE(belt.interlock.locked(at(1300)));
   belt.zero(1310);
   EXPECT_FALSE(belt.interlock.locked(at(1310)));
@@ -312,7 +311,7 @@ TEST(Interlock, isShownFreeOnceSomebodyHasReturnedToNeutral)
 TEST(Interlock, isShownLockedWhileARefusedStreamGoesOn)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.stream(1300, 5000, 100);
   EXPECT_TRUE(belt.interlock.locked(at(5000)));
   EXPECT_FALSE(belt.interlock.locked(at(5500)));
@@ -329,7 +328,7 @@ TEST(Interlock, firstMessageOfALatchedPublisherThatWasHeardBeforeIsARepeat)
 TEST(Interlock, repeatIsNeitherGrantedAfterAStopNorLong)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.command(60000, latched("/planner")), Permission::Repeat);
   EXPECT_EQ(belt.command(60010, latched("/planner")), Permission::Repeat);
 }
@@ -386,7 +385,7 @@ TEST(Interlock, faultKeepsTheLock)
 {
   Running belt;
   belt.interlock.faulted(true);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.zero(1300);
   EXPECT_EQ(belt.command(60000), Permission::Locked);
   EXPECT_TRUE(belt.interlock.locked(at(60000)));
@@ -397,7 +396,7 @@ TEST(Interlock, streamThatGoesOnThroughAFaultAndItsResetIsRefused)
 {
   Running belt;
   belt.interlock.faulted(true);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.stream(1300, 5000, 100), 0);
   belt.interlock.faulted(false);
   belt.interlock.online(at(5000));
@@ -408,7 +407,7 @@ TEST(Interlock, zeroAfterTheFaultUnlocks)
 {
   Running belt;
   belt.interlock.faulted(true);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   belt.interlock.faulted(false);
   belt.zero(1300);
   EXPECT_EQ(belt.command(1400), Permission::Granted);
@@ -532,16 +531,18 @@ TEST(Interlock, commandTimeoutZeroMeansNever)
 TEST(Interlock, commandTimeoutZeroLocksAllTheSame)
 {
   Running belt(0.0);
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.stream(1250, 10000, 100), 0);
-  EXPECT_EQ(belt.interlock.judge(at(10400), publisher()), Permission::Granted);
+  // Its last message came at 9950 ms.
+  EXPECT_EQ(belt.interlock.judge(at(10449), publisher()), Permission::Locked);
+  EXPECT_EQ(belt.interlock.judge(at(10450), publisher()), Permission::Granted);
 }
 
 TEST(Interlock, deadManLocksLikeAnyStop)
 {
   Running belt(0.5);
   ASSERT_TRUE(belt.interlock.deadManDue(at(1500)));
-  belt.stopAndConfirm(1500, 1600);
+  belt.stopAndConfirm(1600);
   EXPECT_FALSE(belt.interlock.deadManDue(at(3000)));
   EXPECT_EQ(belt.command(1700), Permission::Locked);
 }
@@ -577,7 +578,7 @@ TEST(Interlock, numberOfPublishersItRemembersIsBounded)
 TEST(Interlock, refusedStreamIsNotForgottenAmongManyPublishers)
 {
   Running belt;
-  belt.stopAndConfirm(1100, 1200);
+  belt.stopAndConfirm(1200);
   for (int time = 1300; time < 20000; time += 100)
   {
     EXPECT_EQ(belt.command(time), Permission::Locked) << time;

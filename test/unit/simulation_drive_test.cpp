@@ -306,6 +306,16 @@ TEST(SimulatedDrive, otherStationsDoNotFeedTheWatchdogAndBroadcastsDo)
   EXPECT_EQ("0", bus.shown("b", "trip"));
 }
 
+TEST(SimulatedDrive, watchdogWaitsForTheFirstRequestAfterAReset)
+{
+  TestBus bus(oneMx2("C077: 1.0, C076: 0"));
+  bus.command("m trip 7");
+  bus.ask(RESET_ON);
+  EXPECT_EQ("waiting", bus.shown("m", "watchdog"));
+  bus.wait(10.0);
+  EXPECT_EQ("0", bus.shown("m", "tripped"));
+}
+
 TEST(SimulatedDrive, restartAfterTimeoutIsAChoice)
 {
   TestBus bus(

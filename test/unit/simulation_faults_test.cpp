@@ -106,6 +106,15 @@ TEST(SimulatedFaults, functionAndDurationChooseTheExchange)
   EXPECT_EQ(GOOD, bus.ask(READ));
 }
 
+TEST(SimulatedFaults, broadcastUsesNoFaultUp)
+{
+  TestBus bus(oneMx2());
+  bus.command("m lost_reply");
+  bus.ask("00 05 00 00 00 00");
+  EXPECT_EQ("", bus.ask(READ));
+  EXPECT_EQ(GOOD, bus.ask(READ));
+}
+
 TEST(SimulatedFaults, offlineDriveRunsOn)
 {
   TestBus bus(oneMx2());

@@ -299,6 +299,12 @@ public:
     return answer;
   }
 
+  /// The same where it does not matter whether it can happen now (a drive without power can't trip).
+  void provoke(const std::string& command)
+  {
+    simulated_.command(command, clock_.now());
+  }
+
   /// A value of `show`: what the motor really does.
   double motor(const std::string& name, const std::string& key)
   {

@@ -300,8 +300,10 @@ void measureStops(Bench& bench, const Options& options)
   const double gap = options.baud > 19200 ? 0.00175 : 3.5 * character;
   // The longest exchange of an MX2 here: 10 slow registers (8 + 25 characters) and 2 ms of the drive's own.
   const double longest = (8 + 25) * character + 2 * gap + 0.002;
-  std::printf("stop call to the first byte of its frame, %u calls under full load (20 parameter reads waiting, all "
-              "velocities changing)\n", options.calls);
+  std::printf(
+      "stop call to the first byte of its frame, %u calls under full load (20 parameter reads waiting, all "
+      "velocities changing)\n",
+      options.calls);
   std::printf("  median %.1f ms, maximum %.1f ms; longest exchange in flight + gap %.1f ms\n", median(first_byte) * 1e3,
               *std::max_element(first_byte.begin(), first_byte.end()) * 1e3, (longest + gap) * 1e3);
   std::printf("  to the confirmed answer: median %.1f ms, maximum %.1f ms; calls without a frame: %u\n",

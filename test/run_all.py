@@ -127,7 +127,8 @@ def report(program, outcome):
         for name in outcome.failed:
             print('         failed: %s' % name)
         for line in outcome.output.splitlines()[-60:]:
-            print('         | %s' % line)
+            # Without colours and the like.
+            print('         | %s' % re.sub(r'\x1b\[[0-9;]*m|[^\x20-\x7e]', '', line))
 
 
 def unit_programs(build):

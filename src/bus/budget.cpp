@@ -75,8 +75,8 @@ Duration Budget::cycle() const
     fast += refreshCost(index);
     for (const drive::ReadBlock& block : configuration_.drives[index].slowBlocks())
     {
-      slow += line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block),
-                         Duration{ 0 });
+      slow +=
+          line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block), Duration{ 0 });
     }
   }
   // Slow values come once a second each: they take this share of the time.
@@ -135,8 +135,10 @@ std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
   findings.push_back({ Level::Ok, "bus budget: status cycle " + milliseconds(cycle()) + ", worst stop latency " +
-                                      milliseconds(worstStop()) + " (plus the ramp), longest gap between two frames to "
-                                      "an inverter " + milliseconds(longestGap()) });
+                                      milliseconds(worstStop()) +
+                                      " (plus the ramp), longest gap between two frames to "
+                                      "an inverter " +
+                                      milliseconds(longestGap()) });
   for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
   {
     const InverterConfig& config = configuration_.bus.inverters[index];

@@ -205,30 +205,26 @@ std::uint16_t Bus::command(const VelocityCommand& command)
 
 void Bus::refuse(const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text, bool group)
 {
-  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
-    coordinator.refuse(now, indices, error_id, text, group);
-  });
+  implementation_->ask(
+      [&](Coordinator& coordinator, TimePoint now) { coordinator.refuse(now, indices, error_id, text, group); });
 }
 
 void Bus::stop(std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback)
 {
-  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
-    coordinator.stop(now, index, mode, std::move(callback));
-  });
+  implementation_->ask(
+      [&](Coordinator& coordinator, TimePoint now) { coordinator.stop(now, index, mode, std::move(callback)); });
 }
 
 void Bus::reset(std::size_t index, AnswerCallback callback)
 {
-  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
-    coordinator.reset(now, index, std::move(callback));
-  });
+  implementation_->ask(
+      [&](Coordinator& coordinator, TimePoint now) { coordinator.reset(now, index, std::move(callback)); });
 }
 
 void Bus::readFaults(std::size_t index, AnswerCallback callback)
 {
-  implementation_->ask([&](Coordinator& coordinator, TimePoint now) {
-    coordinator.readFaults(now, index, std::move(callback));
-  });
+  implementation_->ask(
+      [&](Coordinator& coordinator, TimePoint now) { coordinator.readFaults(now, index, std::move(callback)); });
 }
 
 void Bus::readParameter(std::size_t index, const std::string& name, AnswerCallback callback)

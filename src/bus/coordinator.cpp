@@ -257,8 +257,7 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
       return jobs_.count(pick.command) != 0 ? composeJob(pick) : composeVelocity(pick);
     case Pick::What::Refresh:
       current.purpose = Purpose::Refresh;
-      current.request = inverter.prepared(
-          inverter.drive.read(inverter.config.node, inverter.refresh.next(now)));
+      current.request = inverter.prepared(inverter.drive.read(inverter.config.node, inverter.refresh.next(now)));
       return current;
     case Pick::What::Probe:
       return composeProbe(pick);
@@ -268,8 +267,8 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
         const drive::Step& step = inverter.drive.sequence("release")->steps.front();
         released_[pick.inverter] = true;
         current.purpose = Purpose::Release;
-        current.request = inverter.prepared(
-            inverter.drive.write(inverter.config.node, step.point, step.value.value_or(0)));
+        current.request =
+            inverter.prepared(inverter.drive.write(inverter.config.node, step.point, step.value.value_or(0)));
         return current;
       }
       current.purpose = Purpose::Setting;

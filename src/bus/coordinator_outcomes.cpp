@@ -286,8 +286,8 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
   if (alive(reply))
   {
     inverter.refresh_tries = 0;
-    const bool more = reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) :
-                                                           inverter.refresh.refused(reply);
+    const bool more =
+        reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
     finishExchange(current, reply, more);
     if (inverter.refresh.takeComplete())
     {

@@ -84,19 +84,22 @@ Report Coordinator::report(TimePoint now) const
   const Budget budget(configuration_, line_);
   if (!connected_)
   {
-    report.findings.push_back({ Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" :
-                                                                     port_error_) +
-                                                  "; plug it in or check its name, rights and settings" });
+    report.findings.push_back(
+        { Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" : port_error_) +
+                            "; plug it in or check its name, rights and settings" });
   }
   if (counters_.foreign_frames > 0 && now - foreign_at_ < seconds(FOREIGN_SHOWN_S))
   {
-    report.findings.push_back({ Level::Warn, "frames that this node did not ask for are on the line: look for a second "
-                                             "master (" + std::to_string(counters_.foreign_frames) + " so far)" });
+    report.findings.push_back({ Level::Warn,
+                                "frames that this node did not ask for are on the line: look for a second "
+                                "master (" +
+                                    std::to_string(counters_.foreign_frames) + " so far)" });
   }
   if (scheduler_->pauseWasCut())
   {
-    report.findings.push_back({ Level::Warn, "interval is longer than a drive's own communication time-out allows and is "
-                                             "cut short" });
+    report.findings.push_back({ Level::Warn,
+                                "interval is longer than a drive's own communication time-out allows and is "
+                                "cut short" });
   }
   for (const Finding& finding : budget.findings())
   {

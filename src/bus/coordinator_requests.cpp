@@ -100,8 +100,8 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
     {
       if (judged[position].error_id == 0 && judged[position].target.zero)
       {
-        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher },
-                        { judged[position] }, false);
+        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher }, { judged[position] },
+                        false);
       }
     }
     return 0;
@@ -241,8 +241,8 @@ void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uin
   StopCall call;
   call.callback = std::move(callback);
   call.expires = now + seconds(bounds().stop);
-  const StopMode wanted = mode <= static_cast<std::uint8_t>(StopMode::Quick) ? static_cast<StopMode>(mode) :
-                                                                               StopMode::Decelerate;
+  const StopMode wanted =
+      mode <= static_cast<std::uint8_t>(StopMode::Quick) ? static_cast<StopMode>(mode) : StopMode::Decelerate;
   bool fell_back = mode > static_cast<std::uint8_t>(StopMode::Quick);
   for (const auto& inverter : inverters_)
   {
@@ -456,8 +456,9 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
   if (!shutting_down_ && inverter.drive.sequence("reset") == nullptr)
   {
     const std::string missing = inverter.drive.missingFor("reset");
-    refuseCall(callback, missing.empty() ? ERROR_NOT_OFFERED : ERROR_NOT_ARMED,
-               missing.empty() ? "this drive has no fault reset" : "fault reset is not armed: confirm '" + missing + "'");
+    refuseCall(
+        callback, missing.empty() ? ERROR_NOT_OFFERED : ERROR_NOT_ARMED,
+        missing.empty() ? "this drive has no fault reset" : "fault reset is not armed: confirm '" + missing + "'");
     return;
   }
   if (refuseJob(index, callback))
@@ -503,8 +504,8 @@ void Coordinator::readParameter(TimePoint now, std::size_t index, const std::str
     const std::string missing = inverter.drive.missingForParameter(name);
     refuseCall(callback, missing.empty() ? ERROR_OUT_OF_RANGE : ERROR_NOT_ARMED,
                missing.empty() ? "'" + name + "' is no parameter of " + inverter.drive.profile().name +
-                                     "; use the drive's own code, or 0x and the number printed in its manual" :
-                                 "parameter '" + name + "' is unconfirmed: confirm '" + missing + "'");
+                                     "; use the drive's own code, or 0x and the number printed in its manual"
+                               : "parameter '" + name + "' is unconfirmed: confirm '" + missing + "'");
     return;
   }
   if (refuseJob(index, callback))

@@ -51,9 +51,8 @@ void DriveSettings::want(const std::string& parameter)
 
 const DriveSettings::Setting* DriveSettings::find(const std::string& parameter) const
 {
-  const auto found = std::find_if(settings_.begin(), settings_.end(), [&](const Setting& setting) {
-    return setting.parameter.name == parameter;
-  });
+  const auto found = std::find_if(settings_.begin(), settings_.end(),
+                                  [&](const Setting& setting) { return setting.parameter.name == parameter; });
   return found == settings_.end() ? nullptr : &*found;
 }
 
@@ -84,17 +83,15 @@ bool DriveSettings::pending() const
 
 wire::Request DriveSettings::next() const
 {
-  const auto unread = std::find_if(settings_.begin(), settings_.end(), [](const Setting& setting) {
-    return setting.state == Setting::State::Unread;
-  });
+  const auto unread = std::find_if(settings_.begin(), settings_.end(),
+                                   [](const Setting& setting) { return setting.state == Setting::State::Unread; });
   return drive_.readParameter(station_, unread->parameter);
 }
 
 void DriveSettings::done(const wire::Reply& reply)
 {
-  const auto unread = std::find_if(settings_.begin(), settings_.end(), [](const Setting& setting) {
-    return setting.state == Setting::State::Unread;
-  });
+  const auto unread = std::find_if(settings_.begin(), settings_.end(),
+                                   [](const Setting& setting) { return setting.state == Setting::State::Unread; });
   if (unread == settings_.end())
   {
     return;
@@ -167,8 +164,8 @@ void DriveSettings::lossFindings(std::vector<Finding>& findings) const
   const Setting* timeout = find(loss.timeout_parameter);
   const Setting* action = find(loss.action_parameter);
   const bool off = timeout != nullptr && timeout->state == Setting::State::Known && timeout->value <= 0.0;
-  const bool ignores = action != nullptr && action->state == Setting::State::Known &&
-                       loss.runs_on.count(action->raw) != 0;
+  const bool ignores =
+      action != nullptr && action->state == Setting::State::Known && loss.runs_on.count(action->raw) != 0;
   if (!off && !ignores)
   {
     return;
@@ -176,8 +173,8 @@ void DriveSettings::lossFindings(std::vector<Finding>& findings) const
   std::string text = "runs on when communication is lost:";
   text += off ? " " + loss.timeout_parameter + " = 0 (off)" : "";
   text += ignores ? std::string(off ? "," : "") + " " + loss.action_parameter + " = " + std::to_string(action->raw) +
-                        " (ignore)" :
-                    "";
+                        " (ignore)"
+                  : "";
   findings.push_back({ Level::Warn, text + "; " + loss.advice });
 }
 
@@ -210,7 +207,8 @@ std::vector<std::pair<std::string, std::string>> DriveSettings::values() const
   const drive::CommunicationLoss& loss = drive_.profile().communication_loss;
   if (loss.timeout_parameter.empty())
   {
-    values.emplace_back("drive time-out", "assumed " + withUnit(loss.assumed_timeout, "s") + ", " + loss.assumed_action);
+    values.emplace_back("drive time-out",
+                        "assumed " + withUnit(loss.assumed_timeout, "s") + ", " + loss.assumed_action);
   }
   return values;
 }

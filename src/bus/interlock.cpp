@@ -203,15 +203,14 @@ bool Interlock::locked(TimePoint now) const
   {
     return false;
   }
-  const bool somebody_neutral = std::any_of(streams_.begin(), streams_.end(),
-                                            [](const auto& stream) { return stream.second.neutral; });
+  const bool somebody_neutral =
+      std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) { return stream.second.neutral; });
   if (somebody_neutral)
   {
     return false;
   }
-  return !silent(now, nullptr) || !std::all_of(streams_.begin(), streams_.end(), [&](const auto& stream) {
-    return silent(now, &stream.second);
-  });
+  return !silent(now, nullptr) || !std::all_of(streams_.begin(), streams_.end(),
+                                               [&](const auto& stream) { return silent(now, &stream.second); });
 }
 
 bool Interlock::stopPending() const

@@ -141,9 +141,8 @@ wire::Request Inverter::prepared(wire::Request request) const
 wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
 {
   const auto loopback = drive.loopback(config.node, number);
-  wire::Request request = loopback ? *loopback :
-                                     drive.read(config.node, drive.runBlock() ? *drive.runBlock() :
-                                                                                drive.fastBlocks().front());
+  wire::Request request =
+      loopback ? *loopback : drive.read(config.node, drive.runBlock() ? *drive.runBlock() : drive.fastBlocks().front());
   request = prepared(request);
   request.response_timeout = std::min(request.response_timeout, response_timeout);
   return request;
@@ -173,8 +172,8 @@ Judgement Inverter::judge(TimePoint now)
   if (judgement.tripped)
   {
     const std::uint16_t code = monitor.fault_code.value_or(0);
-    judgement.stop_reason = "trip " + std::to_string(code) + ": " +
-                            (code == 0 ? std::string("no reason given") : drive.faultText(code));
+    judgement.stop_reason =
+        "trip " + std::to_string(code) + ": " + (code == 0 ? std::string("no reason given") : drive.faultText(code));
   }
   judgeRun(monitor, judgement);
   judgeOperation(now, monitor, judgement);
@@ -377,7 +376,8 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + milliseconds(latest_late_reply_) + " after its request; a response_timeout above that "
+    warn("a reply came " + milliseconds(latest_late_reply_) +
+         " after its request; a response_timeout above that "
          "would have caught it");
   }
   if (!drive.profile().unconfirmed.empty())

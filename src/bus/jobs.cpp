@@ -263,8 +263,8 @@ Job::Progress WriteParameterJob::done(const wire::Reply& reply)
 {
   if (reply.outcome == wire::Outcome::Exception)
   {
-    return refusedByDrive(reply, phase_ == Phase::Write ? "writing " + parameter_.name :
-                                                          parameter_.name + " is written to RAM but not stored");
+    return refusedByDrive(reply, phase_ == Phase::Write ? "writing " + parameter_.name
+                                                        : parameter_.name + " is written to RAM but not stored");
   }
   if (phase_ == Phase::Write)
   {

@@ -77,8 +77,8 @@ JudgedVelocity Movement::judge(double velocity) const
   if (drive_.sequence(name) == nullptr)
   {
     const std::string missing = drive_.missingFor(name);
-    return missing.empty() ? refused(ERROR_NOT_OFFERED, "this drive has no " + name) :
-                             refused(ERROR_NOT_ARMED, name + " is not armed: check '" + missing +
+    return missing.empty() ? refused(ERROR_NOT_OFFERED, "this drive has no " + name)
+                           : refused(ERROR_NOT_ARMED, name + " is not armed: check '" + missing +
                                                           "' in the drive's manual, then confirm or override it");
   }
   if (drive_.sequence(STOP) == nullptr)

@@ -120,8 +120,8 @@ bool Scheduler::velocityWaits(std::size_t inverter) const
 
 std::vector<std::size_t> Scheduler::members(CommandId id) const
 {
-  const auto found = std::find_if(tickets_.begin(), tickets_.end(),
-                                  [&](const Ticket& ticket) { return ticket.command.id == id; });
+  const auto found =
+      std::find_if(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) { return ticket.command.id == id; });
   return found == tickets_.end() ? std::vector<std::size_t>() : found->command.inverters;
 }
 
@@ -135,15 +135,14 @@ void Scheduler::endUnit(CommandId id)
 
 std::size_t Scheduler::readyCommands(TimePoint now) const
 {
-  return static_cast<std::size_t>(std::count_if(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
-    return ready(ticket, now);
-  }));
+  return static_cast<std::size_t>(
+      std::count_if(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) { return ready(ticket, now); }));
 }
 
 bool Scheduler::ready(const Ticket& ticket, TimePoint now) const
 {
-  const bool behind_stop = ticket.command.kind != CommandKind::Velocity &&
-                           stop_pending_[ticket.command.inverters.front()];
+  const bool behind_stop =
+      ticket.command.kind != CommandKind::Velocity && stop_pending_[ticket.command.inverters.front()];
   return ticket.command.not_before <= now && !behind_stop;
 }
 
@@ -215,8 +214,8 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
   }
   if (auto command = pickCommand(now, false))
   {
-    const bool give_way = commands_in_a_row_ > 0 &&
-                          (readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
+    const bool give_way =
+        commands_in_a_row_ > 0 && (readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
     if (give_way)
     {
       if (auto refresh = pickRefresh(now, views))

@@ -62,31 +62,36 @@ void ElasticQueue::addCallback(const ros::CallbackInterfacePtr& callback, std::u
 
 void ElasticQueue::removeByID(std::uint64_t owner_id)
 {
-  // Destroyed without the lock: a callback may hold the last reference to something that uses this queue.
-  std::list<Task> removed;
+  dropWaiting(owner_id);
   std::unique_lock<std::mutex> lock(mutex_);
-  for (auto task = waiting_.begin(); task != waiting_.end();)
-  {
-    const auto next = std::next(task);
-    if (task->owner_id == owner_id)
-    {
-      removed.splice(removed.end(), waiting_, task);
-    }
-    task = next;
-  }
-  changed_.notify_all();
   const std::size_t own = executing_queue == this && executing_owner == owner_id ? 1 : 0;
   changed_.wait(lock, [this, owner_id, own] {
     const auto running = running_.find(owner_id);
     return running == running_.end() || running->second <= own;
   });
-  lock.unlock();
 }
 
 bool ElasticQueue::waitIdle(Duration timeout)
 {
   std::unique_lock<std::mutex> lock(mutex_);
   return changed_.wait_for(lock, timeout, [this] { return idle(); });
+}
+
+void ElasticQueue::dropWaiting(std::uint64_t owner_id)
+{
+  // Destroyed without the lock: a callback may hold the last reference to something that uses this queue.
+  std::list<Task> dropped;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (auto task = waiting_.begin(); task != waiting_.end();)
+  {
+    const auto next = std::next(task);
+    if (task->owner_id == owner_id)
+    {
+      dropped.splice(dropped.end(), waiting_, task);
+    }
+    task = next;
+  }
+  changed_.notify_all();
 }
 
 void ElasticQueue::shutdown()
@@ -158,7 +163,7 @@ void ElasticQueue::run(Task task, std::unique_lock<std::mutex>& lock)
   executing_queue = nullptr;
   if (result != ros::CallbackInterface::TryAgain)
   {
-    task.callback.reset();  // without the lock, as in removeByID()
+    task.callback.reset();  // without the lock, as in dropWaiting()
   }
   lock.lock();
   if (result == ros::CallbackInterface::TryAgain && !stopping_)

@@ -116,9 +116,8 @@ std::unique_ptr<std::ofstream> openTrace()
   return file;
 }
 
-void play()
+void play(ros::NodeHandle& node)
 {
-  ros::NodeHandle node("~");
   const std::unique_ptr<std::ofstream> trace = openTrace();
   sim::SimulatedBus bus(readConfig(), readLineOptions(), sim::Clock::now());
   if (trace)
@@ -164,9 +163,10 @@ int main(int argc, char** argv)
   const auto onSignal = [](int) { ros::requestShutdown(); };
   std::signal(SIGTERM, onSignal);  // roscpp itself looks after SIGINT only
   std::signal(SIGHUP, onSignal);
+  ros::NodeHandle node("~");  // lives until after the last message: without any, ROS logs nothing
   try
   {
-    play();
+    play(node);
     return EXIT_SUCCESS;
   }
   catch (const std::exception& error)

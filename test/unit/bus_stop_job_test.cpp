@@ -27,6 +27,13 @@ const wire::Reply ACKNOWLEDGED = reply("05 00 00 00 00");
 const wire::Reply RUN_IS_OFF = reply("01 01 00");
 const wire::Reply RUN_IS_ON = reply("01 01 01");
 
+/// The stop's next frame leaves and ends with \p end.
+Progress exchange(StopJob& stop, const wire::Reply& end)
+{
+  stop.sent(at(1));
+  return stop.done(end);
+}
+
 class Mx2Stop : public testing::Test
 {
 protected:
@@ -56,23 +63,23 @@ TEST_F(Mx2Stop, writesRunOffAndThenReadsItBack)
 {
   EXPECT_TRUE(stop_.pending());
   EXPECT_EQ(nextFrame(), RUN_OFF);
-  EXPECT_EQ(stop_.done(ACKNOWLEDGED), Progress::GoesOn);
+  EXPECT_EQ(exchange(stop_, ACKNOWLEDGED), Progress::GoesOn);
   EXPECT_TRUE(stop_.written());
   EXPECT_EQ(nextFrame(), READ_RUN);
-  EXPECT_EQ(stop_.done(RUN_IS_OFF), Progress::Confirmed);
+  EXPECT_EQ(exchange(stop_, RUN_IS_OFF), Progress::Confirmed);
   EXPECT_FALSE(stop_.pending());
 }
 
 TEST_F(Mx2Stop, isNotConfirmedByTheAcknowledgementAlone)
 {
-  stop_.done(ACKNOWLEDGED);
+  exchange(stop_, ACKNOWLEDGED);
   EXPECT_TRUE(stop_.pending());
 }
 
 TEST_F(Mx2Stop, beginsAgainWhenRunIsStillOn)
 {
-  stop_.done(ACKNOWLEDGED);
-  EXPECT_EQ(stop_.done(RUN_IS_ON), Progress::Failed);
+  exchange(stop_, ACKNOWLEDGED);
+  EXPECT_EQ(exchange(stop_, RUN_IS_ON), Progress::Failed);
   EXPECT_TRUE(stop_.pending());
   EXPECT_EQ(stop_.attempts(), 1U);
   EXPECT_EQ(nextFrame(), RUN_OFF);
@@ -80,8 +87,8 @@ TEST_F(Mx2Stop, beginsAgainWhenRunIsStillOn)
 
 TEST_F(Mx2Stop, beginsAgainWhenTheReadBackIsLost)
 {
-  stop_.done(ACKNOWLEDGED);
-  EXPECT_EQ(stop_.done(lost()), Progress::Failed);
+  exchange(stop_, ACKNOWLEDGED);
+  EXPECT_EQ(exchange(stop_, lost()), Progress::Failed);
   EXPECT_FALSE(stop_.written());
   EXPECT_EQ(nextFrame(), RUN_OFF);
 }
@@ -92,14 +99,14 @@ TEST_F(Mx2Stop, goesOnForEver)
   {
     ASSERT_EQ(stop_.attempts(), attempt);
     ASSERT_EQ(nextFrame(), RUN_OFF);
-    ASSERT_EQ(stop_.done(lost()), Progress::Failed);
+    ASSERT_EQ(exchange(stop_, lost()), Progress::Failed);
   }
   EXPECT_TRUE(stop_.pending());
 }
 
 TEST_F(Mx2Stop, exceptionIsAFailedAttempt)
 {
-  EXPECT_EQ(stop_.done(exception(0x85, 0x22)), Progress::Failed);
+  EXPECT_EQ(exchange(stop_, exception(0x85, 0x22)), Progress::Failed);
   EXPECT_TRUE(stop_.pending());
   EXPECT_EQ(stop_.lastError(), 0x8522);
   EXPECT_EQ(nextFrame(), RUN_OFF);
@@ -107,32 +114,32 @@ TEST_F(Mx2Stop, exceptionIsAFailedAttempt)
 
 TEST_F(Mx2Stop, remembersWhyTheLastAttemptFailed)
 {
-  stop_.done(lost());
+  exchange(stop_, lost());
   EXPECT_EQ(stop_.lastError(), 0x0205);
-  stop_.done(exception(0x85, 0x22));
+  exchange(stop_, exception(0x85, 0x22));
   EXPECT_EQ(stop_.lastError(), 0x8522);
 }
 
 TEST_F(Mx2Stop, runThatStaysOnIsNotReportedAsTheErrorOfAnEarlierAttempt)
 {
-  stop_.done(lost());
-  stop_.done(ACKNOWLEDGED);
-  stop_.done(RUN_IS_ON);
+  exchange(stop_, lost());
+  exchange(stop_, ACKNOWLEDGED);
+  exchange(stop_, RUN_IS_ON);
   EXPECT_EQ(stop_.lastError(), 0);
 }
 
 TEST_F(Mx2Stop, statusWithRunOffConfirmsIt)
 {
-  stop_.done(ACKNOWLEDGED);
+  exchange(stop_, ACKNOWLEDGED);
   stop_.confirm();
   EXPECT_FALSE(stop_.pending());
 }
 
 TEST_F(Mx2Stop, nextStopBeginsWithTheWriteAndWithNoAttempts)
 {
-  stop_.done(lost());
-  stop_.done(ACKNOWLEDGED);
-  stop_.done(RUN_IS_OFF);
+  exchange(stop_, lost());
+  exchange(stop_, ACKNOWLEDGED);
+  exchange(stop_, RUN_IS_OFF);
   stop_.request(at(5000), StopMode::Decelerate);
   EXPECT_TRUE(stop_.pending());
   EXPECT_EQ(stop_.attempts(), 0U);
@@ -142,8 +149,8 @@ TEST_F(Mx2Stop, nextStopBeginsWithTheWriteAndWithNoAttempts)
 
 TEST_F(Mx2Stop, secondRequestLeavesTheOneUnderWayAsItIs)
 {
-  stop_.done(lost());
-  stop_.done(ACKNOWLEDGED);
+  exchange(stop_, lost());
+  exchange(stop_, ACKNOWLEDGED);
   stop_.request(at(5000), StopMode::Decelerate);
   EXPECT_EQ(stop_.attempts(), 1U);
   EXPECT_EQ(nextFrame(), READ_RUN);
@@ -155,8 +162,8 @@ TEST_F(Mx2Stop, measuresTheTimeFromTheRequestToItsFirstByteOnce)
   ASSERT_TRUE(latency);
   EXPECT_EQ(*latency, Ms(12));
   EXPECT_FALSE(stop_.sent(at(30)));
-  stop_.done(ACKNOWLEDGED);
-  stop_.done(RUN_IS_OFF);
+  exchange(stop_, ACKNOWLEDGED);
+  exchange(stop_, RUN_IS_OFF);
   stop_.request(at(1000), StopMode::Decelerate);
   EXPECT_EQ(*stop_.sent(at(1003)), Ms(3));
 }
@@ -214,7 +221,7 @@ TEST(StopJob, acknowledgementConfirmsWhereTheDriveCannotTellRun)
   const drive::Drive drive(profile);
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
-  EXPECT_EQ(stop.done(ACKNOWLEDGED), Progress::Confirmed);
+  EXPECT_EQ(exchange(stop, ACKNOWLEDGED), Progress::Confirmed);
 }
 
 TEST(StopJob, valueOfRunThatMeansNothingConfirmsNoStop)
@@ -227,8 +234,8 @@ TEST(StopJob, valueOfRunThatMeansNothingConfirmsNoStop)
   const drive::Drive drive(profile);
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
-  stop.done(ACKNOWLEDGED);
-  EXPECT_NE(stop.done(reply("03 02 00 07")), Progress::Confirmed) << "7 is not seen off";
+  exchange(stop, ACKNOWLEDGED);
+  EXPECT_NE(exchange(stop, reply("03 02 00 07")), Progress::Confirmed) << "7 is not seen off";
 }
 
 TEST(StopJob, coastIsWrittenStepByStepBeforeTheReadBack)
@@ -237,9 +244,9 @@ TEST(StopJob, coastIsWrittenStepByStepBeforeTheReadBack)
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Coast);
   EXPECT_EQ(printed(stop.next()), FREE_RUN);
-  EXPECT_EQ(stop.done(reply("05 00 08 FF 00")), Progress::GoesOn);
+  EXPECT_EQ(exchange(stop, reply("05 00 08 FF 00")), Progress::GoesOn);
   EXPECT_EQ(printed(stop.next()), RUN_OFF);
-  EXPECT_EQ(stop.done(ACKNOWLEDGED), Progress::GoesOn);
+  EXPECT_EQ(exchange(stop, ACKNOWLEDGED), Progress::GoesOn);
   EXPECT_EQ(printed(stop.next()), READ_RUN);
 }
 
@@ -248,8 +255,8 @@ TEST(StopJob, coastUpgradesAPendingStopAndItsAttemptsGoOnCounting)
   const drive::Drive drive = mx2WithCoast();
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
-  stop.done(lost());
-  stop.done(ACKNOWLEDGED);
+  exchange(stop, lost());
+  exchange(stop, ACKNOWLEDGED);
   stop.request(at(100), StopMode::Coast);
   EXPECT_EQ(printed(stop.next()), FREE_RUN);
   EXPECT_EQ(stop.attempts(), 1U);
@@ -281,8 +288,9 @@ TEST(StopJob, upgradeWhileTheReadBackIsOnTheWireIsNotTakenForWritten)
   const drive::Drive drive = mx2WithCoast();
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
-  stop.done(ACKNOWLEDGED);
+  exchange(stop, ACKNOWLEDGED);
   ASSERT_EQ(printed(stop.next()), READ_RUN);
+  stop.sent(at(4));
   stop.request(at(5), StopMode::Coast);
   stop.done(RUN_IS_OFF);
   EXPECT_TRUE(!stop.pending() || printed(stop.next()) == FREE_RUN) << "the reply of a read was taken for one of a write";

@@ -136,11 +136,20 @@ private:
 
   void harm(std::size_t index)
   {
-    const std::vector<std::string> faults{ "damaged count 1",   "truncated count 1",    "late 0.15 count 1",
-                                           "late 0.05 count 2", "noise 4 count 1",      "foreign station count 1",
-                                           "foreign shape count 1", "exception 34 count 1", "power_cycle 0.02",
-                                           "power_cycle 1.2",   "trip 7",               "panel_stop",
-                                           "offline 0.4",       "offline 2" };
+    const std::vector<std::string> faults{ "damaged count 1",
+                                           "truncated count 1",
+                                           "late 0.15 count 1",
+                                           "late 0.05 count 2",
+                                           "noise 4 count 1",
+                                           "foreign station count 1",
+                                           "foreign shape count 1",
+                                           "exception 34 count 1",
+                                           "power_cycle 0.02",
+                                           "power_cycle 1.2",
+                                           "trip 7",
+                                           "panel_stop",
+                                           "offline 0.4",
+                                           "offline 2" };
     const std::size_t which = std::uniform_int_distribution<std::size_t>(0, faults.size() - 1)(random_);
     bus_.provoke(std::string(NAMES[index]) + " " + faults[which]);
   }

@@ -265,9 +265,8 @@ TEST(Scheduling, deadInvertersCostAtMostFivePercentAndComeBackWithinThreeSeconds
   EXPECT_LE(probing / toSeconds(bus.now() - start), 0.06) << "5 % and the gap before the next frame";
   bus.world("belt_2 online");
   bus.world("belt_4 online");
-  EXPECT_TRUE(bus.runUntil(3.0, [&] {
-    return !bus.status(1).communication_error && !bus.status(3).communication_error;
-  }));
+  EXPECT_TRUE(
+      bus.runUntil(3.0, [&] { return !bus.status(1).communication_error && !bus.status(3).communication_error; }));
 }
 
 TEST(Scheduling, theIntervalPausesTheCycleButNotACommand)

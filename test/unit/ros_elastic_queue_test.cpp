@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -118,7 +119,7 @@ TEST(ElasticQueueTest, aRemovedOwnersCallbacksNeitherRunNorAreRunning)
 {
   SteadyEvent started;
   SteadyEvent release;
-  SteadyEvent removed;
+  SteadyEvent dropped;
   std::atomic<bool> finished{ false };
   std::atomic<bool> ran{ false };
   ElasticQueue queue(1);
@@ -129,15 +130,16 @@ TEST(ElasticQueueTest, aRemovedOwnersCallbacksNeitherRunNorAreRunning)
                     }),
                     1);
   ASSERT_TRUE(started.waitFor(PATIENCE));
-  queue.addCallback(callback([&ran] { ran = true; }), 1);
+  {
+    const std::shared_ptr<SteadyEvent> guard(&dropped, [](SteadyEvent* event) { event->set(); });
+    queue.addCallback(callback([&ran, guard] { ran = true; }), 1);
+  }
   std::thread remover([&] {
     queue.removeByID(1);
     EXPECT_TRUE(finished);
-    removed.set();
   });
-  EXPECT_FALSE(removed.isSet());
+  EXPECT_TRUE(dropped.waitFor(PATIENCE));
   release.set();
-  EXPECT_TRUE(removed.waitFor(PATIENCE));
   remover.join();
   EXPECT_TRUE(queue.waitIdle(PATIENCE));
   EXPECT_FALSE(ran);

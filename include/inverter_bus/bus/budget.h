@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "inverter_bus/bus/types.h"
 #include "inverter_bus/bus/configuration.h"
+#include "inverter_bus/bus/types.h"
 
 namespace inverter_bus
 {

@@ -105,9 +105,9 @@ struct BusStatus
   std::uint16_t error_id = 0;
   wire::LineCounters counters;
   std::uint64_t reconnects = 0;
-  double cycle_time = 0.0;   ///< [s] of the last complete cycle
-  double utilization = 0.0;  ///< 0..1 of the line's time over the last second
-  double efficiency = 0.0;   ///< computed cost of the cycle / its real time
+  double cycle_time = 0.0;        ///< [s] of the last complete cycle
+  double utilization = 0.0;       ///< 0..1 of the line's time over the last second
+  double efficiency = 0.0;        ///< computed cost of the cycle / its real time
   double stop_latency_max = 0.0;  ///< [s]
   std::vector<std::uint8_t> offline_nodes;
 };

@@ -57,6 +57,7 @@ private:
   using Threads = std::list<boost::thread>;
 
   void grow();
+  void dropWaiting(std::uint64_t owner_id);
   void work(Threads::iterator self);
   void run(Task task, std::unique_lock<std::mutex>& lock);
   void retire(Threads::iterator self);

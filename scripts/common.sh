@@ -32,16 +32,30 @@ show_progress() {
   fi
 }
 
-# build DIRECTORY [CMAKE ARGUMENTS...]: configures (once) and builds; the whole output goes to DIRECTORY/build.log.
+# lock DIRECTORY: keeps other runs of these scripts out of a build directory until unlock, or the end of the program.
+lock() {
+  mkdir -p "$1"
+  exec 9>"$1/lock"
+  if ! flock -n 9; then
+    echo "Waiting for another run in ${1#"$root"/} to end ..."
+    flock 9
+  fi
+}
+
+unlock() {
+  exec 9>&-
+}
+
+# build DIRECTORY TARGETS [CMAKE ARGUMENTS...]: configures (once) and builds, with the whole output in DIRECTORY/build.log.
 build() {
-  local directory=$1
-  shift
+  local directory=$1 targets
+  read -ra targets <<<"$2"
+  shift 2
   local arguments=("-DPYTHON_EXECUTABLE=$python" "-DCATKIN_DEVEL_PREFIX=$directory/devel" "$@")
   local log=$directory/build.log
   if [ -f /opt/ros/noetic/setup.bash ]; then
     source_setup /opt/ros/noetic/setup.bash
   fi
-  mkdir -p "$directory"
   if [ ! -f "$directory/Makefile" ] || [ "$(cat "$directory/arguments" 2>/dev/null)" != "${arguments[*]}" ]; then
     echo "Configuring in ${directory#"$root"/} ..."
     rm -f "$directory/arguments"
@@ -53,7 +67,7 @@ build() {
     printf '%s' "${arguments[*]}" >"$directory/arguments"
   fi
   echo "Building in ${directory#"$root"/} (a first build takes some minutes) ..."
-  if ! cmake --build "$directory" -- -j"$(nproc)" 2>&1 | tee "$log" | show_progress; then
+  if ! cmake --build "$directory" -- -j"$(nproc)" "${targets[@]}" 2>&1 | tee "$log" | show_progress; then
     grep -nE -A6 'error|Error |\*\*\*' "$log" | head -n 60 >&2 || true
     echo "The build failed; all of it is in $log" >&2
     return 1

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """`make install` into an empty directory: the installed tree runs by itself, with its own profiles and launch files."""
+import glob
 import os
 import shutil
 import socket
@@ -41,9 +42,16 @@ class InstalledTree(unittest.TestCase):
 
     @classmethod
     def in_tree(cls, command):
-        noetic = '/opt/ros/noetic/setup.bash'
-        sources = ['source ' + noetic] if os.path.exists(noetic) else []
-        return ' && '.join(sources + ['source %s/setup.bash' % cls.prefix, command])
+        """Debian's catkin installs no setup.bash: the tree is then added by hand, as README says."""
+        noetic, own = '/opt/ros/noetic/setup.bash', os.path.join(cls.prefix, 'setup.bash')
+        lines = ['source ' + noetic] if os.path.exists(noetic) else []
+        if os.path.exists(own):
+            lines.append('source ' + own)
+        else:
+            python = glob.glob(os.path.join(cls.prefix, 'lib', 'python3*', '*-packages'))[0]
+            lines.append('export ROS_PACKAGE_PATH=%s/share:/usr/share CMAKE_PREFIX_PATH=%s PYTHONPATH=%s' %
+                         (cls.prefix, cls.prefix, python))
+        return ' && '.join(lines + [command])
 
     def run_in_tree(self, command):
         return subprocess.run(['bash', '-c', self.in_tree(command)], env=self.environment, stdout=subprocess.PIPE,

@@ -20,7 +20,8 @@ constexpr double PROBE_SHARE = 0.05;
 constexpr double PROBE_ROUND_S = 2.7;
 constexpr double SHORTEST_PROBE_TIMEOUT_S = 0.015;
 // Every so many probes waits the whole response_timeout, for a drive that has become slow.
-constexpr unsigned FULL_PROBE_EVERY = 4;
+constexpr std::size_t FULL_PROBE_EVERY = 4;
+constexpr std::size_t FULL_PROBE_EVERY_OF_MANY = 16;
 // A pick that turned out to have nothing to send is dropped; more in a row than this would be a mistake of ours.
 constexpr int MOST_EMPTY_PICKS = 100;
 constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
@@ -328,12 +329,14 @@ Coordinator::Current Coordinator::composeProbe(const Pick& pick)
 Duration Coordinator::probeTimeout(const Inverter& inverter) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
-  if (inverter.probes % FULL_PROBE_EVERY == FULL_PROBE_EVERY - 1)
+  const auto dead = std::count_if(inverters_.begin(), inverters_.end(),
+                                  [](const std::unique_ptr<Inverter>& other) { return other->offline(); });
+  // Staggered by index, so that no round has more than a few full ones.
+  const std::size_t every = dead > 1 ? FULL_PROBE_EVERY_OF_MANY : FULL_PROBE_EVERY;
+  if ((inverter.probes + inverter.index) % every == every - 1)
   {
     return full;
   }
-  const auto dead = std::count_if(inverters_.begin(), inverters_.end(),
-                                  [](const std::unique_ptr<Inverter>& other) { return other->offline(); });
   const wire::Request bare = inverter.probe(0, Duration::zero());
   const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<long>(dead, 1)));
   const Duration needed = inverter.slowestReply() + inverter.slowestReply() / 2;

@@ -100,21 +100,19 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
     {
       if (judged[position].error_id == 0 && judged[position].target.zero)
       {
-        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher }, { judged[position] },
+        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher, false }, { judged[position] },
                         false);
       }
     }
     return 0;
   }
   applyVelocities(now, command, judged, error_id != 0);
-  if (command.targets.size() > 1)
-  {
-    group_error_ = error_id;
-  }
   if (error_id == 0)
   {
+    group_error_ = 0;
     return 0;
   }
+  group_error_ = command.grouped ? error_id : group_error_;
   for (std::size_t position = 0; position < judged.size(); ++position)
   {
     Inverter& inverter = *inverters_[command.targets[position].first];

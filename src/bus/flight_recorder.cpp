@@ -44,11 +44,14 @@ TraceDump FlightRecorder::dump(const std::string& reason, TimePoint now) const
 
 std::optional<TraceDump> FlightRecorder::automaticDump(const std::string& reason, TimePoint now)
 {
-  if (last_automatic_ && now - *last_automatic_ < seconds(AUTOMATIC_DUMP_SPACING_S))
   {
-    return std::nullopt;
+    const std::lock_guard<std::mutex> guard(mutex_);
+    if (last_automatic_ && now - *last_automatic_ < seconds(AUTOMATIC_DUMP_SPACING_S))
+    {
+      return std::nullopt;
+    }
+    last_automatic_ = now;
   }
-  last_automatic_ = now;
   return dump(reason, now);
 }
 }  // namespace bus

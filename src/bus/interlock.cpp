@@ -87,7 +87,9 @@ bool Interlock::silent(TimePoint now, const Stream* stream) const
   TimePoint since = *neutral_since_;
   if (stream != nullptr)
   {
-    needed = std::max(needed, std::min(2 * stream->spacing, seconds(LONGEST_SPACING_SILENCE_S)));
+    // The longest of the last few: a publisher that sends in pairs does not become a fast one by that.
+    const Duration spacing = *std::max_element(stream->spacings.begin(), stream->spacings.end());
+    needed = std::max(needed, std::min(2 * spacing, seconds(LONGEST_SPACING_SILENCE_S)));
     since = std::max(since, stream->last);
   }
   return now - since >= needed;
@@ -142,7 +144,8 @@ Interlock::Stream& Interlock::book(TimePoint now, const Publisher& publisher)
   }
   else
   {
-    found->second.spacing = now - found->second.last;
+    found->second.spacings[found->second.next_spacing] = now - found->second.last;
+    found->second.next_spacing = (found->second.next_spacing + 1) % found->second.spacings.size();
   }
   found->second.last = now;
   found->second.topics.insert(publisher.topic);

@@ -166,7 +166,8 @@ Judgement Inverter::judge(TimePoint now)
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
   interlock.online(now);
-  const bool faulted = monitor.faulted.value_or(false);
+  // A status that can't tell of a trip does not end one.
+  const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
   judgement.tripped = faulted && !interlock.isFaulted();
   interlock.faulted(faulted);
   if (judgement.tripped)

@@ -12,6 +12,7 @@ namespace
 {
 constexpr double VERIFY_PERIOD_S = 0.1;
 constexpr double BUSY_PERIOD_S = 0.05;
+constexpr unsigned VERIFICATIONS_BEFORE_REPEAT = 10;
 }  // namespace
 
 Job::Job(const drive::Drive& drive, std::uint8_t station, CommandKind kind)
@@ -87,6 +88,7 @@ wire::Request ResetJob::next()
   {
     return drive_.read(station_, verifyBlock());
   }
+  begun_ = true;
   const drive::Step& step = drive_.sequence("reset")->steps[step_];
   return drive_.write(station_, step.point, step.value.value_or(0));
 }
@@ -102,7 +104,8 @@ Job::Progress ResetJob::done(const wire::Reply& reply)
   {
     case Phase::CheckRun:
       drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
-      if (monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(false))
+      // A word that means nothing is no proof that RUN is off.
+      if (monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(true))
       {
         if (run_was_on_)
         {
@@ -135,6 +138,12 @@ Job::Progress ResetJob::done(const wire::Reply& reply)
         answer().error_id = wire::ERROR_TIMEOUT;
         answer().message = "the drive is still tripped after the reset: remove the cause first";
         pause_ = seconds(VERIFY_PERIOD_S);
+        if (++still_tripped_ == VERIFICATIONS_BEFORE_REPEAT)
+        {
+          // A reset coil that an earlier master left on gave no edge the first time.
+          phase_ = drive_.runBlock() ? Phase::CheckRun : Phase::Steps;
+          step_ = 0;
+        }
         return Progress::GoesOn;
       }
       return succeed("trip cleared");
@@ -156,7 +165,7 @@ Job::Progress ResetJob::lost(const wire::Reply& reply)
 
 bool ResetJob::resetting() const
 {
-  return phase_ == Phase::Verify || (phase_ == Phase::Steps && step_ > 0);
+  return begun_;
 }
 
 // --- faults ----------------------------------------------------------------------------------------------------------
@@ -253,7 +262,8 @@ wire::Request WriteParameterJob::next()
   }
   if (phase_ == Phase::Busy)
   {
-    return *drive_.readStoreBusy(station_);
+    const auto busy = drive_.readStoreBusy(station_);
+    return busy ? *busy : drive_.readParameter(station_, parameter_);
   }
   const drive::Step& step = drive_.sequence("store")->steps[step_];
   return drive_.write(station_, step.point, step.value.value_or(0));
@@ -282,20 +292,32 @@ Job::Progress WriteParameterJob::done(const wire::Reply& reply)
   }
   if (phase_ == Phase::Store)
   {
-    if (++step_ < drive_.sequence("store")->steps.size())
-    {
-      return Progress::GoesOn;
-    }
-    phase_ = Phase::Busy;
-    pause_ = seconds(BUSY_PERIOD_S);
-    return drive_.readStoreBusy(station_) ? Progress::GoesOn : stored();
+    return afterStoreStep();
   }
-  if (drive_.decodeStoreBusy(reply.pdu))
+  if (drive_.readStoreBusy(station_) && drive_.decodeStoreBusy(reply.pdu))
   {
     pause_ = seconds(BUSY_PERIOD_S);
     return Progress::GoesOn;
   }
   return stored();
+}
+
+Job::Progress WriteParameterJob::afterStoreStep()
+{
+  const auto& steps = drive_.sequence("store")->steps;
+  pause_ = seconds(steps[step_].pause);
+  if (++step_ < steps.size())
+  {
+    return Progress::GoesOn;
+  }
+  phase_ = Phase::Busy;
+  if (drive_.readStoreBusy(station_))
+  {
+    pause_ = std::max(pause_, seconds(BUSY_PERIOD_S));
+    return Progress::GoesOn;
+  }
+  // Without a busy flag the profile's pause is all that protects the writing; a read of the parameter ends it.
+  return pause_ > Duration::zero() ? Progress::GoesOn : stored();
 }
 
 Job::Progress WriteParameterJob::stored()

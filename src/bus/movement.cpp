@@ -91,7 +91,8 @@ JudgedVelocity Movement::judge(double velocity) const
 void Movement::aim(const Target& target)
 {
   target_ = target;
-  zero_unverified_ = false;
+  // A second 0 leaves the question open whether the first one has taken RUN off.
+  zero_unverified_ = target.zero && zero_unverified_;
   active_ = next().has_value();
   if (target.zero && !active_)
   {

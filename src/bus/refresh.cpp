@@ -15,6 +15,8 @@ constexpr double OLDEST_SLOW_VALUE_S = 1.0;
 constexpr double SLOW_MARGIN_S = 0.1;
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
+// Modbus exceptions 01 to 03 (function, address, count) speak of the request itself; later ones of the moment.
+constexpr std::uint8_t LAST_LASTING_EXCEPTION = 0x03;
 
 template <typename T>
 void take(const std::optional<T>& from, std::optional<T>& to)
@@ -105,6 +107,13 @@ std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive:
 
 Refresh::Refresh(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
 {
+  buildBlocks();
+}
+
+void Refresh::buildBlocks()
+{
+  blocks_.clear();
+  slow_cursor_ = 0;
   const auto add = [&](const std::vector<drive::ReadBlock>& reads, Class kind) {
     for (const drive::ReadBlock& read : reads)
     {
@@ -114,10 +123,10 @@ Refresh::Refresh(const drive::Drive& drive, std::uint8_t station) : drive_(drive
       blocks_.push_back(block);
     }
   };
-  add(drive.slowBlocks(), Class::Slow);
-  add(drive.faultBlocks(), Class::Fault);
+  add(drive_.slowBlocks(), Class::Slow);
+  add(drive_.faultBlocks(), Class::Fault);
   // Last, so that the stamp belongs to the values that matter.
-  add(drive.fastBlocks(), Class::Fast);
+  add(drive_.fastBlocks(), Class::Fast);
 }
 
 void Refresh::plan(TimePoint now)
@@ -227,6 +236,13 @@ bool Refresh::received(const wire::Reply& reply)
 
 bool Refresh::refused(const wire::Reply& reply)
 {
+  const std::uint8_t code = reply.pdu.size() > 1 ? reply.pdu[1] : std::uint8_t{ 0 };
+  if (code > LAST_LASTING_EXCEPTION)
+  {
+    // Busy, or locked for the moment: nothing is known, and nothing follows for the next refresh.
+    failed();
+    return false;
+  }
   const std::size_t index = plan_[position_];
   const std::vector<drive::ReadBlock> halves = splitBlock(drive_, blocks_[index].read);
   if (halves.size() < 2)
@@ -296,11 +312,8 @@ void Refresh::forget()
   failed();
   fresh_ = drive::Monitor();
   complete_ = false;
-  for (Block& block : blocks_)
-  {
-    block.ever = false;
-    block.values = drive::Monitor();
-  }
+  // Reads that were split or left out are tried in full again.
+  buildBlocks();
 }
 
 std::vector<drive::ReadBlock> Refresh::fastBlocks() const

@@ -13,7 +13,8 @@ namespace
 {
 // Contract, rule 3.3: three attempts at once, then every second exchange at most.
 constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
-constexpr std::uint64_t INSISTING_SPACING = 2;
+// Other exchanges between two frames of a stop that insists.
+constexpr std::uint64_t INSISTING_SPACING = 1;
 // Rule 3.14: the lowest class gets at least every eighth exchange.
 constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
 // A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.
@@ -172,12 +173,17 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
   {
     stop_pending_[index] = views[index].stop_pending;
   }
+  if (half_refreshed_ && views[*half_refreshed_].offline)
+  {
+    half_refreshed_.reset();
+  }
   Pick pick = choose(now, views);
   if (pick.what == Pick::What::Nothing)
   {
     return pick;
   }
   ++epoch_;
+  deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : 0;
   if (pick.what == Pick::What::Stop)
   {
     bookStop(pick, views);
@@ -187,7 +193,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
 
 Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 {
-  if (auto stop = pickStop(views))
+  if (auto stop = pickStop(views, false))
   {
     return *stop;
   }
@@ -195,6 +201,22 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
   {
     return *urgent;
   }
+  if (auto other = chooseBehindStops(now, views))
+  {
+    return *other;
+  }
+  // A live drive's stop that insists lets something else through; if there is nothing else, it goes on.
+  if (auto stop = pickStop(views, true))
+  {
+    return *stop;
+  }
+  const auto late = pickDeadline(now, views);
+  return late ? *late : nothing(now, views);
+}
+
+/// Everything but stops and what wants to stop.
+std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vector<InverterView>& views)
+{
   const auto unit = find(unit_);
   if (unit != tickets_.end() && unit->command.not_before <= now)
   {
@@ -203,40 +225,52 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
     pick.command = unit_;
     return pick;
   }
-  if (auto deadline = pickDeadline(now, views))
+  if (half_refreshed_ && views[*half_refreshed_].refresh_not_before <= now)
   {
-    return *deadline;
+    // The words of one status belong together.
+    Pick pick;
+    pick.what = Pick::What::Refresh;
+    pick.inverter = *half_refreshed_;
+    return pick;
+  }
+  // Time-outs that can't be met must not take the bus from everything else.
+  const auto supervised = static_cast<unsigned>(std::count_if(
+      views.begin(), views.end(), [](const InverterView& view) { return view.serve_by && !view.offline; }));
+  const auto deadline = deadlines_in_a_row_ < supervised ? pickDeadline(now, views) : std::nullopt;
+  if (deadline)
+  {
+    return deadline;
   }
   const auto background = pickBackground(views);
   if (background && exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND)
   {
-    return *background;
+    return background;
+  }
+  const auto probe = pickProbe(now, views);
+  if (probe && probe->what == Pick::What::Stop)
+  {
+    return probe;
   }
   if (auto command = pickCommand(now, false))
   {
     const bool give_way =
         commands_in_a_row_ > 0 && (readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
-    if (give_way)
+    if (give_way && probe)
     {
-      if (auto refresh = pickRefresh(now, views))
-      {
-        return *refresh;
-      }
+      return probe;
     }
-    return *command;
+    const auto refresh = give_way ? pickRefresh(now, views) : std::nullopt;
+    return refresh ? refresh : command;
   }
-  if (auto probe = pickProbe(now, views))
+  if (probe)
   {
-    return *probe;
+    return probe;
   }
-  if (auto refresh = pickRefresh(now, views))
-  {
-    return *refresh;
-  }
-  return background ? *background : nothing(now, views);
+  const auto refresh = pickRefresh(now, views);
+  return refresh ? refresh : background;
 }
 
-std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views) const
+std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views, bool nothing_else) const
 {
   using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
   std::optional<Key> best;
@@ -245,7 +279,8 @@ std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views) 
     const InverterView& view = views[index];
     // An offline inverter's stop is tried once at once; then it is that inverter's probe.
     const bool at_once = view.offline ? view.stop_attempts == 0 : view.stop_attempts < STOP_ATTEMPTS_AT_ONCE;
-    const bool insisting = !view.offline && exchanges_ - last_insisting_exchange_ >= INSISTING_SPACING;
+    const bool spaced = exchanges_ - last_insisting_exchange_ >= INSISTING_SPACING || last_insisting_exchange_ == 0;
+    const bool insisting = !view.offline && (spaced || nothing_else);
     if (!view.stop_pending || !(at_once || insisting))
     {
       continue;
@@ -270,7 +305,7 @@ std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views) 
 void Scheduler::bookStop(const Pick& pick, const std::vector<InverterView>& views)
 {
   last_stop_exchange_[pick.inverter] = exchanges_ + 1;
-  if (views[pick.inverter].stop_attempts >= STOP_ATTEMPTS_AT_ONCE)
+  if (views[pick.inverter].stop_attempts + 1 >= STOP_ATTEMPTS_AT_ONCE)
   {
     last_insisting_exchange_ = exchanges_ + 1;
   }
@@ -312,6 +347,7 @@ std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<Inv
   Pick pick;
   pick.what = Pick::What::Refresh;
   pick.inverter = *most_urgent;
+  pick.deadline = true;
   return pick;
 }
 
@@ -467,6 +503,7 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
         refreshed_in_cycle_ = true;
         cursor_ += more ? 0 : 1;
       }
+      noteHalfRefresh(pick, more);
       break;
     case Pick::What::Background:
       exchanges_without_background_ = 0;
@@ -474,6 +511,19 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
       break;
     default:
       break;
+  }
+}
+
+void Scheduler::noteHalfRefresh(const Pick& pick, bool more)
+{
+  const bool by_deadline = pick.deadline || half_refreshed_ == pick.inverter;
+  if (more && by_deadline)
+  {
+    half_refreshed_ = pick.inverter;
+  }
+  else
+  {
+    half_refreshed_.reset();
   }
 }
 

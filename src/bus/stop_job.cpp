@@ -38,6 +38,7 @@ void StopJob::request(TimePoint now, StopMode mode)
   pending_ = sequenceFor(mode) != "stop" || drive_.sequence("stop") != nullptr;
   mode_ = mode;
   step_ = 0;
+  ++version_;
   requested_at_ = now;
   first_frame_left_ = false;
   last_error_ = 0;
@@ -70,6 +71,7 @@ wire::Request StopJob::next() const
 
 std::optional<Duration> StopJob::sent(TimePoint now)
 {
+  version_on_wire_ = version_;
   if (first_frame_left_)
   {
     return std::nullopt;
@@ -80,6 +82,11 @@ std::optional<Duration> StopJob::sent(TimePoint now)
 
 StopJob::Progress StopJob::done(const wire::Reply& reply)
 {
+  if (version_on_wire_ != version_)
+  {
+    // The mode was upgraded while this frame was on its way: its answer says nothing of the new one.
+    return Progress::GoesOn;
+  }
   if (reply.outcome != wire::Outcome::Ok)
   {
     last_error_ = reply.error_id;
@@ -100,9 +107,11 @@ StopJob::Progress StopJob::done(const wire::Reply& reply)
   }
   drive::Monitor monitor;
   drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
-  const bool still_on = monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(false);
+  // A word that means nothing is no proof that RUN is off.
+  const bool still_on = monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(true);
   if (still_on)
   {
+    last_error_ = 0;
     step_ = 0;
     ++attempts_;
     return Progress::Failed;

@@ -118,6 +118,7 @@ void Commands::onGroup(const ros::MessageEvent<VelocityCommand const>& event)
   VelocityGroup group = resolve(*event.getConstMessage(), index_by_name_);
   bus::VelocityCommand command;
   command.targets = std::move(group.targets);
+  command.grouped = true;
   command.publisher = group_connections_.identify(event.getConnectionHeaderPtr());
   if (!command.targets.empty())
   {

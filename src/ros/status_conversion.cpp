@@ -150,9 +150,9 @@ InverterStatus toMessage(const bus::InverterStatus& status, const bus::InverterC
   message.node = config.node;
   message.drive = config.drive;
   putOwn(status, message);
-  // What an offline drive said last is no status any more.
-  // Empty while the inverter is offline.
-  const drive::Monitor& monitor = status.monitor;
+  // The bus empties the monitor of an offline inverter; should it not, what the drive said last is no status any more.
+  const drive::Monitor nothing;
+  const drive::Monitor& monitor = status.communication_error ? nothing : status.monitor;
   putFlags(monitor, message);
   putCodes(monitor, drive, message);
   putQuantities(monitor, message);

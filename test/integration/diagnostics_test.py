@@ -82,8 +82,13 @@ class Diagnostics(unittest.TestCase):
         self.wait_level('belt_1', DiagnosticStatus.OK)
 
     def testASecondMasterWarns(self):
-        self.bench.simulate('bus foreign 01 03 00 00 00 02')
-        self.wait_level('bus', DiagnosticStatus.WARN, 'master')
+        def warns():
+            self.bench.simulate('bus foreign 01 03 00 00 00 02')
+            self.bench.diagnostics.clear()
+            status = wait_for(lambda: self.bench.diagnostics.get('bus'), 'an entry of the bus')
+            return status.level == DiagnosticStatus.WARN and 'master' in text_of(status)
+
+        wait_for(warns, 'a warning of the bus')
 
 
 def text_of(status):

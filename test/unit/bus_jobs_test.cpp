@@ -236,8 +236,8 @@ TEST(ReadFaultsJob, readsEachOfTheSixEntriesInOneExchange)
 {
   const drive::Drive mx2 = shipped("omron_mx2");
   ReadFaultsJob job(mx2, 1, false);
-  for (const char* request : { "01 03 00 11 00 0A", "01 03 00 1B 00 0A", "01 03 00 25 00 0A", "01 03 00 2F 00 0A",
-                               "01 03 00 39 00 0A" })
+  for (const char* request :
+       { "01 03 00 11 00 0A", "01 03 00 1B 00 0A", "01 03 00 25 00 0A", "01 03 00 2F 00 0A", "01 03 00 39 00 0A" })
   {
     EXPECT_EQ(frame(job), request);
     EXPECT_EQ(job.done(NO_TRIP), Progress::GoesOn);

@@ -293,7 +293,8 @@ TEST(StopJob, upgradeWhileTheReadBackIsOnTheWireIsNotTakenForWritten)
   stop.sent(at(4));
   stop.request(at(5), StopMode::Coast);
   stop.done(RUN_IS_OFF);
-  EXPECT_TRUE(!stop.pending() || printed(stop.next()) == FREE_RUN) << "the reply of a read was taken for one of a write";
+  EXPECT_TRUE(!stop.pending() || printed(stop.next()) == FREE_RUN)
+      << "the reply of a read was taken for one of a write";
 }
 }  // namespace
 }  // namespace bus

@@ -64,7 +64,8 @@ public:
     judge();
     for (std::size_t index = 0; index < INVERTERS; ++index)
     {
-      bus_.wait(bus_.reset(index));
+      const bus::Answer answer = bus_.wait(bus_.reset(index));
+      EXPECT_TRUE(answer.success) << NAMES[index] << ": " << answer.message;
     }
     const bool calm = bus_.runUntil(10.0, [&] {
       for (std::size_t index = 0; index < INVERTERS; ++index)
@@ -78,13 +79,26 @@ public:
       }
       return true;
     });
-    EXPECT_TRUE(calm) << "the bus did not come back";
+    EXPECT_TRUE(calm) << "the bus did not come back: " << state();
     judge();
     EXPECT_GT(runs_, 0) << "nothing ever ran: this seed has shown nothing";
   }
 
 private:
   static constexpr const char* NAMES[INVERTERS] = { "a", "b", "c" };
+
+  std::string state()
+  {
+    std::ostringstream text;
+    for (std::size_t index = 0; index < INVERTERS; ++index)
+    {
+      const bus::InverterStatus& status = bus_.status(index);
+      text << "\n" << NAMES[index] << ": offline " << status.communication_error << " locked " << status.locked
+           << " stop " << status.stop_active << " error " << status.error_id << " age "
+           << toSeconds(bus_.now() - status.stamp) << "\n  " << bus_.world(std::string(NAMES[index]) + " show");
+    }
+    return text.str();
+  }
 
   double chance()
   {

@@ -228,6 +228,7 @@ public:
     command.targets = targets;
     command.publisher.name = publisher;
     command.publisher.topic = "group";
+    command.grouped = true;
     return coordinator_.command(clock_.now(), command);
   }
 

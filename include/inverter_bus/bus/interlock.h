@@ -3,6 +3,7 @@
 #ifndef INVERTER_BUS_BUS_INTERLOCK_H
 #define INVERTER_BUS_BUS_INTERLOCK_H
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -80,7 +81,8 @@ private:
   struct Stream
   {
     TimePoint last;
-    Duration spacing{ 0 };
+    std::array<Duration, 3> spacings{};
+    std::size_t next_spacing = 0;
     bool neutral = false;
     unsigned admitted = 0;
     bool nonzero = false;

@@ -80,6 +80,8 @@ private:
   Phase phase_;
   std::size_t step_ = 0;
   bool run_was_on_ = false;
+  bool begun_ = false;
+  unsigned still_tripped_ = 0;
 };
 
 class ReadFaultsJob : public Job
@@ -128,6 +130,7 @@ private:
     Store,
     Busy
   };
+  Progress afterStoreStep();
   Progress stored();
 
   drive::Parameter parameter_;

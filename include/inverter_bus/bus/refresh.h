@@ -67,6 +67,7 @@ private:
     drive::Monitor values;
   };
   void plan(TimePoint now);
+  void buildBlocks();
   void planFaultReads();
   bool advance();
 

@@ -82,6 +82,8 @@ struct Pick
   CommandId command = 0;
   /// Paid from the probes' share of the bus time.
   bool probe = false;
+  /// Goes before its turn, because the drive's own time-out is near.
+  bool deadline = false;
   TimePoint wake;
 };
 
@@ -150,7 +152,7 @@ private:
     std::uint64_t epoch;
     std::uint64_t sequence;
   };
-  std::optional<Pick> pickStop(const std::vector<InverterView>& views) const;
+  std::optional<Pick> pickStop(const std::vector<InverterView>& views, bool nothing_else) const;
   std::optional<Pick> pickDeadline(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickCommand(TimePoint now, bool urgent_only) const;
   std::optional<Pick> pickProbe(TimePoint now, const std::vector<InverterView>& views) const;
@@ -161,6 +163,8 @@ private:
   bool findNextOfCycle(TimePoint now, const std::vector<InverterView>& views);
   void closeCycle(TimePoint now);
   Pick choose(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseBehindStops(TimePoint now, const std::vector<InverterView>& views);
+  void noteHalfRefresh(const Pick& pick, bool more);
   void bookStop(const Pick& pick, const std::vector<InverterView>& views);
   std::size_t readyCommands(TimePoint now) const;
   bool ready(const Ticket& ticket, TimePoint now) const;
@@ -182,6 +186,9 @@ private:
   CommandId unit_ = 0;
   unsigned commands_in_a_row_ = 0;
   unsigned exchanges_without_background_ = 0;
+  unsigned deadlines_in_a_row_ = 0;
+  /// A refresh that a deadline began and that needs another read.
+  std::optional<std::size_t> half_refreshed_;
 
   // probes
   std::size_t probe_cursor_ = 0;

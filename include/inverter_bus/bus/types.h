@@ -74,6 +74,8 @@ struct VelocityCommand
 {
   std::vector<std::pair<std::size_t, double>> targets;
   Publisher publisher;
+  /// Came over the grouped topic: a refusal shows in the bus status too.
+  bool grouped = false;
 };
 
 /// What InverterStatus.msg carries. An empty field of \ref monitor is NaN or "can't tell" there.

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// What the words of one inverter mean together (contract, section 4).
+
+#include "inverter_bus/bus/inverter.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus_fixture.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+class Mx2Inverter : public testing::Test
+{
+protected:
+  /// One refresh with these coils; the registers say 0 Hz, 0 A, stopped, the newest trip is E12.
+  Judgement status(const std::string& coils)
+  {
+    bool more = true;
+    while (more)
+    {
+      const drive::ReadBlock& block = inverter_.refresh.next(at(time_));
+      const std::string request = printed(mx2_.read(1, block));
+      const int sent_at = time_;
+      time_ += 10;
+      more = inverter_.refresh.received(reply(answerTo(request, coils), at(time_), at(sent_at)));
+    }
+    EXPECT_TRUE(inverter_.refresh.takeComplete());
+    return inverter_.judge(at(time_));
+  }
+
+  /// One refresh in which the drive refuses every read: busy.
+  Judgement busyStatus()
+  {
+    bool more = true;
+    for (int reads = 0; more && reads < 100; ++reads)
+    {
+      const drive::ReadBlock& block = inverter_.refresh.next(at(time_));
+      const std::uint8_t function = block.space == drive::Space::Coil ? 0x81 : 0x83;
+      time_ += 10;
+      more = inverter_.refresh.refused(exception(function, 0x06, at(time_)));
+    }
+    return inverter_.judge(at(time_));
+  }
+
+  static std::string answerTo(const std::string& request, const std::string& coils)
+  {
+    if (request == "01 01 00 00 00 18")
+    {
+      return coils;
+    }
+    if (request == "01 03 10 00 00 04")
+    {
+      return "03 08 00 00 00 00 00 00 00 00";
+    }
+    if (request == "01 03 10 0F 00 0A")
+    {
+      return "03 14 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00";
+    }
+    return "03 02 00 0C";
+  }
+
+  const InverterConfig config_ = inverterConfig();
+  const drive::Drive mx2_ = shipped("omron_mx2");
+  Inverter inverter_{ 0, config_, mx2_, 3 };
+  int time_ = 0;
+};
+
+const std::string AT_REST = "01 03 00 00 01";
+const std::string TRIPPED = "01 03 00 00 81";
+const std::string LEFTOVER_RUN = "01 03 01 40 05";
+
+TEST_F(Mx2Inverter, newTripAsksForAStopAtOnceAndOnce)
+{
+  status(AT_REST);
+  const Judgement judgement = status(TRIPPED);
+  EXPECT_TRUE(judgement.tripped);
+  EXPECT_THAT(judgement.stop_reason, testing::HasSubstr("E12"));
+  EXPECT_TRUE(inverter_.interlock.isFaulted());
+  EXPECT_FALSE(status(TRIPPED).tripped);
+}
+
+TEST_F(Mx2Inverter, leftoverRunAtTheFirstStatusIsCleared)
+{
+  EXPECT_FALSE(status(LEFTOVER_RUN).stop_reason.empty());
+}
+
+TEST_F(Mx2Inverter, driveAtRestGivesNoReasonToStop)
+{
+  EXPECT_TRUE(status(AT_REST).stop_reason.empty());
+  EXPECT_TRUE(status(AT_REST).stop_reason.empty());
+}
+
+TEST_F(Mx2Inverter, statusThatCannotTellOfTheTripDoesNotLiftTheLock)
+{
+  status(AT_REST);
+  status(TRIPPED);
+  ASSERT_TRUE(inverter_.interlock.isFaulted());
+  busyStatus();
+  EXPECT_TRUE(inverter_.interlock.isFaulted()) << "not known is not healthy";
+}
+
+TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
+{
+  status(AT_REST);
+  busyStatus();
+  time_ += 1000;
+  std::string request;
+  for (int reads = 0; reads < 6 && request != "01 01 00 00 00 18"; ++reads)
+  {
+    const drive::ReadBlock& block = inverter_.refresh.next(at(time_));
+    request = printed(mx2_.read(1, block));
+    inverter_.refresh.failed();
+  }
+  EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
+}
+}  // namespace
+}  // namespace bus
+}  // namespace inverter_bus

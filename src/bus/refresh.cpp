@@ -15,6 +15,7 @@ constexpr double OLDEST_SLOW_VALUE_S = 1.0;
 constexpr double SLOW_MARGIN_S = 0.1;
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
+constexpr double POSTPONED_S = 0.5;
 // Modbus exceptions 01 to 03 (function, address, count) speak of the request itself; later ones of the moment.
 constexpr std::uint8_t LAST_LASTING_EXCEPTION = 0x03;
 
@@ -166,6 +167,7 @@ void Refresh::plan(TimePoint now)
 
 const drive::ReadBlock& Refresh::next(TimePoint now)
 {
+  asked_at_ = now;
   if (position_ >= plan_.size())
   {
     plan(now);
@@ -239,9 +241,8 @@ bool Refresh::refused(const wire::Reply& reply)
   const std::uint8_t code = reply.pdu.size() > 1 ? reply.pdu[1] : std::uint8_t{ 0 };
   if (code > LAST_LASTING_EXCEPTION)
   {
-    // Busy, or locked for the moment: nothing is known, and nothing follows for the next refresh.
-    failed();
-    return false;
+    // Busy, or locked for the moment: nothing is known, and nothing follows for later refreshes.
+    return postpone();
   }
   const std::size_t index = plan_[position_];
   const std::vector<drive::ReadBlock> halves = splitBlock(drive_, blocks_[index].read);
@@ -261,8 +262,26 @@ bool Refresh::refused(const wire::Reply& reply)
   return true;
 }
 
+/// The read at hand is not to be had now. Without a slow one the refresh goes on, without a fast one it has no result.
+bool Refresh::postpone()
+{
+  Block& block = blocks_[plan_[position_]];
+  if (block.kind != Class::Slow)
+  {
+    failed();
+    return false;
+  }
+  block.left_out_until = asked_at_ + seconds(POSTPONED_S);
+  return advance();
+}
+
 void Refresh::failed()
 {
+  // A slow read that gets lost must not stand before the run words of the next refresh again.
+  if (position_ < plan_.size() && blocks_[plan_[position_]].kind == Class::Slow)
+  {
+    blocks_[plan_[position_]].left_out_until = asked_at_ + seconds(POSTPONED_S);
+  }
   plan_.clear();
   position_ = 0;
 }

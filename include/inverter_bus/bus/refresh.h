@@ -70,6 +70,7 @@ private:
   void buildBlocks();
   void planFaultReads();
   bool advance();
+  bool postpone();
 
   const drive::Drive& drive_;
   std::uint8_t station_;
@@ -80,6 +81,7 @@ private:
   drive::Monitor scratch_;
   TimePoint scratch_sent_at_;
   TimePoint scratch_time_;
+  TimePoint asked_at_;
   bool fault_planned_ = false;
   drive::Monitor fresh_;
   TimePoint fresh_sent_at_;

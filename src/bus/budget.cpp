@@ -91,8 +91,8 @@ Duration Budget::longestExchange() const
   {
     for (const wire::Request& request : requests(index))
     {
-      longest = std::max(longest, line_.costUnanswered(request));
-      longest = std::max(longest, line_.cost(request, request.reply_delay));
+      // A reply may begin when its time is almost up: nothing on the line takes longer.
+      longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
   return longest;
@@ -108,20 +108,57 @@ Duration Budget::worstStop() const
       const drive::Step& step = stop->steps.front();
       wire::Request request = configuration_.drives[index].write(1, step.point, step.value.value_or(0));
       request.response_timeout = Duration{ 0 };
+      // Two gaps: the second one ends the frame for the drive.
       frame = std::max(frame, line_.costUnanswered(request));
     }
   }
   return longestExchange() + frame;
 }
 
+Duration Budget::velocityUnit(std::size_t index) const
+{
+  const drive::Drive& drive = configuration_.drives[index];
+  Duration unit{ 0 };
+  if (const drive::Sequence* forward = drive.sequence("forward"))
+  {
+    for (const drive::Step& step : forward->steps)
+    {
+      unit += line_.cost(drive.write(configuration_.bus.inverters[index].node, step.point, step.value.value_or(0)),
+                         seconds(drive.profile().reply_delay));
+    }
+  }
+  return unit;
+}
+
 Duration Budget::longestGap() const
 {
-  return 2 * cycle() + seconds(configuration_.bus.interval) + longestExchange();
+  Duration commands{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    commands += static_cast<int>(configuration_.drives[index].fastBlocks().size()) * velocityUnit(index);
+  }
+  return cycle() + commands + seconds(configuration_.bus.interval) + longestExchange();
+}
+
+Duration Budget::deadlineMargin() const
+{
+  Duration margin = longestExchange();
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    Duration read{ 0 };
+    for (const drive::ReadBlock& block : configuration_.drives[index].fastBlocks())
+    {
+      read = std::max(read, line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block),
+                                       seconds(configuration_.drives[index].profile().reply_delay)));
+    }
+    margin += read + velocityUnit(index);
+  }
+  return margin;
 }
 
 std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Duration timeout) const
 {
-  const Duration gap = longestGap() - seconds(configuration_.bus.interval);
+  const Duration gap = deadlineMargin();
   if (timeout > gap)
   {
     return std::nullopt;

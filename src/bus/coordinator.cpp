@@ -46,7 +46,9 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   last_published_.resize(inverters_.size());
   shutdown_tried_.resize(inverters_.size(), false);
   released_.resize(inverters_.size(), false);
-  longest_exchange_ = Budget(configuration, line).longestExchange();
+  const Budget budget(configuration, line);
+  longest_exchange_ = budget.longestExchange();
+  deadline_margin_ = budget.deadlineMargin();
 }
 
 Coordinator::~Coordinator() = default;
@@ -139,7 +141,7 @@ std::vector<InverterView> Coordinator::views(TimePoint now) const
   views.reserve(inverters_.size());
   for (const auto& inverter : inverters_)
   {
-    views.push_back(inverter->view(now, longest_exchange_));
+    views.push_back(inverter->view(now, deadline_margin_));
   }
   return views;
 }
@@ -403,10 +405,22 @@ void Coordinator::sent(TimePoint now)
   }
 }
 
+/// The longest wait of a drive's own (C078) as read from it, beyond what its profile says.
+Duration Coordinator::longestReplyDelay() const
+{
+  Duration longest{ 0 };
+  for (const auto& inverter : inverters_)
+  {
+    const Duration known = seconds(inverter->drive.profile().reply_delay);
+    longest = std::max(longest, inverter->settings.replyDelay() - known);
+  }
+  return longest;
+}
+
 void Coordinator::noteStopLatency(Duration latency)
 {
   stop_latency_max_ = std::max(stop_latency_max_, latency);
-  if (latency > longest_exchange_ + line_.timing().characters(64))
+  if (latency > longest_exchange_ + longestReplyDelay() + line_.timing().characters(64))
   {
     outputs_.traces.push_back("stop took " + std::to_string(toSeconds(latency)) + " s to the wire");
   }

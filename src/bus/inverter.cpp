@@ -412,7 +412,7 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   return values;
 }
 
-InverterView Inverter::view(TimePoint now, Duration longest_exchange) const
+InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 {
   InverterView view;
   const drive::Monitor& monitor = refresh.fresh();
@@ -427,7 +427,7 @@ InverterView Inverter::view(TimePoint now, Duration longest_exchange) const
   const auto timeout = settings.driveTimeout();
   if (timeout && ever_answered_)
   {
-    const Duration latest = seconds(toSeconds(*timeout) * TIMEOUT_SHARE) - longest_exchange;
+    const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
     view.serve_by = last_reply_ + std::max(latest, Duration::zero());
   }
   return view;

@@ -232,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{ "unknownKey", "baudrate: 9600\n" + ONE, { "~:", "'baudrate'", "9600", "baud_rate", ALLOWED } },
         Wrong{ "emptyPort", "port: ''\n" + ONE, { "'port'", "''", ALLOWED } },
-        Wrong{ "relativePort", "port: ttyUSB0\n" + ONE, { "'port'", "'ttyUSB0'", ALLOWED } },
+        Wrong{ "portNumber", "port: 5\n" + ONE, { "'port'", "5", "no text", ALLOWED } },
         Wrong{ "gatewayPort", "port: tcp://gateway\n" + ONE, { "'port'", "tcp://gateway", "serial ports", ALLOWED } },
         Wrong{ "tunnelPort", "port: rtu+tcp://a:1\n" + ONE, { "'port'", "serial ports", ALLOWED } },
         Wrong{ "compowayF", "protocol: compoway_f\n" + ONE, { "'protocol'", "compoway_f", "allowed: modbus_rtu" } },

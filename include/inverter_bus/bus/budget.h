@@ -25,10 +25,13 @@ public:
   Duration cycle() const;
   /// Acceptance of a stop to the last bit of its frame: the longest exchange in flight, unanswered, then the frame.
   Duration worstStop() const;
-  /// Longest time between two frames to the same inverter: every refresh alternates with a command, and one exchange of
-  /// the cycle is lost.
+  /// Longest time between two frames to the same inverter: every read of the cycle alternates with a velocity of one
+  /// inverter, and one exchange is lost.
   Duration longestGap() const;
-  /// The longest exchange in use, unanswered.
+  /// How long a drive whose own time-out comes near may have to wait for its turn all the same: an exchange in flight, a
+  /// velocity for all inverters under way, and every other drive's turn before it.
+  Duration deadlineMargin() const;
+  /// The longest exchange in use: its reply begins when its time is almost up.
   Duration longestExchange() const;
 
   /// Lines for the log: the figures, and WARN where a time-out can't be met.
@@ -38,6 +41,7 @@ public:
 
 private:
   Duration refreshCost(std::size_t index) const;
+  Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
 
   const Configuration& configuration_;

@@ -170,6 +170,7 @@ private:
   std::optional<Current> composeBroadcast();
   bool releaseDue(const Inverter& inverter) const;
   void noteStopLatency(Duration latency);
+  Duration longestReplyDelay() const;
   Pick pickShutdown(TimePoint now);
   std::optional<Current> compose(TimePoint now, const Pick& pick);
   std::optional<Current> composeVelocity(const Pick& pick);
@@ -213,6 +214,7 @@ private:
   bool ever_opened_ = false;
   Duration stop_latency_max_{ 0 };
   Duration longest_exchange_{ 0 };
+  Duration deadline_margin_{ 0 };
   std::uint16_t last_error_ = 0;
   std::uint16_t group_error_ = 0;
   std::uint8_t last_node_ = 0;

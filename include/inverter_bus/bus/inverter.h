@@ -75,7 +75,7 @@ public:
   InverterStatus status(TimePoint now) const;
   std::vector<Finding> findings(TimePoint now) const;
   std::vector<std::pair<std::string, std::string>> values(TimePoint now) const;
-  InverterView view(TimePoint now, Duration longest_exchange) const;
+  InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
   void acceptCommand();

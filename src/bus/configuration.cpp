@@ -42,7 +42,7 @@ const std::vector<std::string> BUS_KEYS{ "port",
 std::string readPort(const Section& section, const std::string& fallback)
 {
   const char* const allowed = "a serial device, such as /dev/ttyUSB0";
-  const std::string port = section.text("port", fallback);
+  std::string port = section.text("port", fallback);
   if (port.find("://") != std::string::npos)
   {
     section.fail("port", "names a network, and this version serves serial ports", allowed);

@@ -29,7 +29,7 @@ std::string readName(const Section& entry)
   static const std::regex GRAPH_NAME("[A-Za-z][A-Za-z0-9_]*");
   const std::string allowed = "a letter, then letters, digits and _; not " + join(RESERVED_NAMES);
   entry.require("name", allowed);
-  const std::string name = entry.text("name", "");
+  std::string name = entry.text("name", "");
   if (!std::regex_match(name, GRAPH_NAME))
   {
     entry.fail("name", "is no legal ROS name", allowed);

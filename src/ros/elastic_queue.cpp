@@ -16,7 +16,7 @@ namespace
 constexpr std::size_t THREADS_KEPT = 4;
 
 /// Enough for a service callback with logging, small enough for hundreds of threads.
-constexpr std::size_t STACK_SIZE = 512 * 1024;
+constexpr std::size_t STACK_SIZE = std::size_t{ 512 } * 1024;
 
 /// What this thread is executing, so that a callback that removes its own owner does not wait for itself.
 thread_local const ElasticQueue* executing_queue = nullptr;
@@ -30,6 +30,7 @@ ElasticQueue::ElasticQueue(std::size_t most_threads) : most_threads_(std::max<st
   grow();
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): join() throws for interrupted threads, and nobody interrupts them
 ElasticQueue::~ElasticQueue()
 {
   shutdown();

@@ -3,19 +3,18 @@
 #include "inverter_bus/ros/node.h"
 
 #include <chrono>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <ros/console.h>
-#include <ros/init.h>
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 
 #include "inverter_bus/bus/bus.h"
 #include "inverter_bus/ros/commands.h"
 #include "inverter_bus/ros/diagnostics.h"
+#include "inverter_bus/ros/log.h"
 #include "inverter_bus/ros/parameters.h"
 #include "inverter_bus/ros/publishing.h"
 #include "inverter_bus/ros/services.h"
@@ -31,27 +30,6 @@ namespace
 {
 constexpr Duration WATCH_PERIOD = std::chrono::milliseconds(100);
 constexpr Duration ANSWER_TIME = std::chrono::seconds(1);
-
-/// After ROS went down by itself, rosconsole is silent: the last line must come through all the same.
-void logLine(bus::Level level, const std::string& text)
-{
-  if (ros::isShuttingDown())
-  {
-    std::fprintf(stderr, "%s\n", text.c_str());
-  }
-  else if (level == bus::Level::Ok)
-  {
-    ROS_INFO_STREAM(text);
-  }
-  else if (level == bus::Level::Warn)
-  {
-    ROS_WARN_STREAM(text);
-  }
-  else
-  {
-    ROS_ERROR_STREAM(text);
-  }
-}
 
 std::optional<bus::Configuration> readNodeConfiguration()
 {
@@ -70,11 +48,11 @@ void logStart(const bus::BusConfig& config, const bus::Bus& bus)
 {
   for (const std::string& line : effectiveConfiguration(config))
   {
-    ROS_INFO_STREAM(line);
+    log(bus::Level::Ok, line);
   }
   for (const bus::Finding& finding : bus.budget())
   {
-    logLine(finding.level, finding.text);
+    log(finding.level, finding.text);
   }
 }
 
@@ -100,17 +78,17 @@ void logEnd(int status, const bus::BusConfig& config, const std::vector<std::str
   }
   if (!names.empty())
   {
-    logLine(bus::Level::Error, "shutdown: NOT confirmed as stopped, look after them: " + names);
+    log(bus::Level::Error, "shutdown: NOT confirmed as stopped, look after them: " + names);
   }
   else if (status != 0)
   {
-    logLine(bus::Level::Error, "port " + config.port +
-                                   " is in use by another program, tried for 15 s: end that program "
-                                   "or choose another port");
+    log(bus::Level::Error, "port " + config.port +
+                               " is in use by another program, tried for 15 s: end that program "
+                               "or choose another port");
   }
   else
   {
-    logLine(bus::Level::Ok, "shutdown: every motor that this node may have set running is confirmed as stopped");
+    log(bus::Level::Ok, "shutdown: every motor that this node may have set running is confirmed as stopped");
   }
 }
 }  // namespace
@@ -126,7 +104,7 @@ int runNode(Lifetime& lifetime)
   }
   const bus::BusConfig& config = configuration->bus;
   TraceFiles traces(config.trace_directory, ros::this_node::getName(),
-                    [](const std::string& text) { ROS_WARN_STREAM(text); });
+                    [](const std::string& text) { log(bus::Level::Warn, text); });
   Publishing publishing(node, *configuration, traces);
   bus::Bus bus(*configuration, wire::makeSerialPort(config.serial), publishing);
   logStart(config, bus);

@@ -5,8 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include <ros/console.h>
-
+#include "inverter_bus/ros/log.h"
 #include "inverter_bus/ros/status_conversion.h"
 
 namespace inverter_bus
@@ -129,18 +128,7 @@ void Publishing::publish(const bus::Finding& finding)
   }
   const std::size_t suppressed = throttle_.takeSuppressed();
   const std::string more = suppressed == 0 ? "" : " (" + std::to_string(suppressed) + " repeated lines left out)";
-  switch (finding.level)
-  {
-    case bus::Level::Ok:
-      ROS_INFO_STREAM(finding.text << more);
-      break;
-    case bus::Level::Warn:
-      ROS_WARN_STREAM(finding.text << more);
-      break;
-    case bus::Level::Error:
-      ROS_ERROR_STREAM(finding.text << more);
-      break;
-  }
+  ros_node::log(finding.level, finding.text + more);
 }
 }  // namespace ros_node
 }  // namespace inverter_bus

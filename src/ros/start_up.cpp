@@ -5,8 +5,9 @@
 #include <chrono>
 #include <sstream>
 
-#include <ros/console.h>
 #include <ros/master.h>
+
+#include "inverter_bus/ros/log.h"
 
 namespace inverter_bus
 {
@@ -83,7 +84,7 @@ bool waitForMaster(const SteadyEvent& end)
   {
     if (!told)
     {
-      ROS_WARN_STREAM("waiting for the ROS master at " << ros::master::getURI() << ": start roscore or roslaunch");
+      log(bus::Level::Warn, "waiting for the ROS master at " + ros::master::getURI() + ": start roscore or roslaunch");
       told = true;
     }
     if (end.waitFor(MASTER_PERIOD))

@@ -130,7 +130,7 @@ std::string TraceFiles::write(const bus::TraceDump& dump, std::string& error)
   const std::lock_guard<std::mutex> lock(writing_);
   std::error_code result;
   fs::create_directories(directory_, result);
-  const std::string path = newPath(dump.reason);
+  std::string path = newPath(dump.reason);
   // Under another name first: whoever watches the directory never sees half a file.
   const std::string part = path + ".part";
   const int problem = writeNewFile(part, text.str());

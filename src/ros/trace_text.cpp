@@ -70,16 +70,16 @@ std::string fileStamp(WallTime time)
 
 void writeTrace(const bus::TraceDump& dump, TimePoint steady, WallTime wall, std::ostream& out)
 {
-  const auto toWall = [steady, wall](TimePoint time) {
+  const auto to_wall = [steady, wall](TimePoint time) {
     return wall + std::chrono::duration_cast<WallTime::duration>(time - steady);
   };
   out << "# inverter_bus flight recorder: " << dump.reason << '\n';
-  out << "# at " << formatUtc(toWall(dump.time), "%Y-%m-%dT%H:%M:%S") << "Z, " << dump.frames.size() << " frames\n";
+  out << "# at " << formatUtc(to_wall(dump.time), "%Y-%m-%dT%H:%M:%S") << "Z, " << dump.frames.size() << " frames\n";
   out << "# UTC            since last [us]  frame\n";
   TimePoint previous = dump.frames.empty() ? steady : dump.frames.front().time;
   for (const wire::FrameEvent& frame : dump.frames)
   {
-    writeFrame(frame, previous, toWall(frame.time), out);
+    writeFrame(frame, previous, to_wall(frame.time), out);
     previous = frame.time;
   }
 }

@@ -28,6 +28,7 @@ Publishing::Publishing(ros::NodeHandle& node, const bus::Configuration& configur
     inverter_publishers_.push_back(node.advertise<InverterStatus>(inverter.name + "/status", STATUS_QUEUE));
   }
   bus_publisher_ = node.advertise<BusStatus>("bus_status", 1, true);
+  moments_.resize(config_.inverters.size());
   thread_ = std::thread([this] { work(); });
 }
 
@@ -106,12 +107,23 @@ void Publishing::handle(const Item& item)
   std::visit([this](const auto& report) { publish(report); }, item);
 }
 
+/// A reply keeps the ROS time that it got when its status was published first, however often it is shown again.
+const Moment& Publishing::momentOf(const bus::InverterStatus& status)
+{
+  Moment& moment = moments_[status.index];
+  if (status.has_stamp && moment.steady != status.stamp)
+  {
+    moment = Moment{ status.stamp, toRosTime(status.stamp, Moment::now()) };
+  }
+  return moment;
+}
+
 void Publishing::publish(const bus::InverterStatus& status)
 {
   if (status.index < inverter_publishers_.size())
   {
     inverter_publishers_[status.index].publish(
-        toMessage(status, config_.inverters[status.index], drives_[status.index], Moment::now()));
+        toMessage(status, config_.inverters[status.index], drives_[status.index], momentOf(status)));
   }
 }
 

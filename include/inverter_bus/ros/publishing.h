@@ -17,6 +17,7 @@
 #include "inverter_bus/bus/configuration.h"
 #include "inverter_bus/bus/types.h"
 #include "inverter_bus/ros/log_throttle.h"
+#include "inverter_bus/ros/status_conversion.h"
 #include "inverter_bus/ros/trace_files.h"
 
 namespace inverter_bus
@@ -54,13 +55,15 @@ private:
   void publish(const bus::InverterStatus& status);
   void publish(const bus::BusStatus& status);
   void publish(const bus::Finding& finding);
+  const Moment& momentOf(const bus::InverterStatus& status);
 
   const bus::BusConfig config_;
   const std::vector<drive::Drive> drives_;
   TraceFiles& traces_;
   std::vector<ros::Publisher> inverter_publishers_;
   ros::Publisher bus_publisher_;
-  LogThrottle throttle_;  ///< publisher thread only
+  LogThrottle throttle_;         ///< publisher thread only
+  std::vector<Moment> moments_;  ///< of each inverter's last reply; publisher thread only
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -148,8 +148,9 @@ Duration Budget::deadlineMargin() const
     Duration read{ 0 };
     for (const drive::ReadBlock& block : configuration_.drives[index].fastBlocks())
     {
-      read = std::max(read, line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block),
-                                       seconds(configuration_.drives[index].profile().reply_delay)));
+      read =
+          std::max(read, line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block),
+                                    seconds(configuration_.drives[index].profile().reply_delay)));
     }
     margin += read + velocityUnit(index);
   }

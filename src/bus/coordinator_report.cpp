@@ -112,7 +112,8 @@ Report Coordinator::report(TimePoint now) const
   report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
   report.values.emplace_back("computed cycle", rounded(toSeconds(budget.cycle()) * 1e3, "%.1f ms"));
   report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
-  report.values.emplace_back("worst stop latency, computed", rounded(toSeconds(budget.worstStop() + longestReplyDelay()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("worst stop latency, computed",
+                             rounded(toSeconds(budget.worstStop() + longestReplyDelay()) * 1e3, "%.1f ms"));
   report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));

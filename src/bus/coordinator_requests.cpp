@@ -100,8 +100,8 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
     {
       if (judged[position].error_id == 0 && judged[position].target.zero)
       {
-        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher, false }, { judged[position] },
-                        false);
+        applyVelocities(now, VelocityCommand{ { command.targets[position] }, command.publisher, false },
+                        { judged[position] }, false);
       }
     }
     return 0;

@@ -98,9 +98,10 @@ private:
     for (std::size_t index = 0; index < INVERTERS; ++index)
     {
       const bus::InverterStatus& status = bus_.status(index);
-      text << "\n" << NAMES[index] << ": offline " << status.communication_error << " locked " << status.locked
-           << " stop " << status.stop_active << " error " << status.error_id << " age "
-           << toSeconds(bus_.now() - status.stamp) << "\n  " << bus_.world(std::string(NAMES[index]) + " show");
+      text << "\n"
+           << NAMES[index] << ": offline " << status.communication_error << " locked " << status.locked << " stop "
+           << status.stop_active << " error " << status.error_id << " age " << toSeconds(bus_.now() - status.stamp)
+           << "\n  " << bus_.world(std::string(NAMES[index]) + " show");
     }
     return text.str();
   }

@@ -228,7 +228,13 @@ TEST(ElasticQueueTest, manyThreadsMayAddAndRemove)
     user.join();
   }
   EXPECT_TRUE(queue.waitIdle(PATIENCE));
-  EXPECT_GT(ran, 0);
+  const int before = ran;
+  for (std::uint64_t owner = 1; owner <= 4; ++owner)
+  {
+    queue.addCallback(callback([&ran] { ++ran; }), owner);
+  }
+  EXPECT_TRUE(queue.waitIdle(PATIENCE));
+  EXPECT_EQ(before + 4, ran);
 }
 }  // namespace
 }  // namespace ros_node

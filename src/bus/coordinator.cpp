@@ -356,7 +356,9 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   {
     return true;
   }
-  if (const auto loopback = inverter.drive.loopback(inverter.config.node, ++loopback_number_))
+  const auto loopback =
+      inverter.loopback.usable() ? inverter.drive.loopback(inverter.config.node, ++loopback_number_) : std::nullopt;
+  if (loopback)
   {
     const Duration timeout = current.request.response_timeout;
     current.request = inverter.prepared(*loopback);

@@ -15,6 +15,8 @@ namespace
 // A velocity unit that newer and newer targets keep going makes room for others after so many frames per inverter.
 constexpr unsigned MOST_FRAMES_PER_UNIT = 8;
 
+constexpr std::uint8_t LOOPBACK = 0x08;
+
 bool alive(const wire::Reply& reply)
 {
   return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
@@ -60,6 +62,12 @@ void Coordinator::done(const wire::Reply& reply)
   if (alive(reply) && inverter.answered(reply))
   {
     log(Level::Ok, inverter.config.name + ": online");
+  }
+  const bool loopback_probe =
+      current.purpose == Purpose::Probe && current.request.pdu.front() == LOOPBACK && alive(reply);
+  if (current.resync || loopback_probe)
+  {
+    inverter.loopback.note(reply.outcome);
   }
   if (current.resync && alive(reply))
   {
@@ -186,6 +194,10 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     inverter.refuseCommand(reply.error_id,
                            exception ? inverter.drive.exceptionText(reply.error_id) : errorText(reply.error_id));
     inverter.movement.giveUp();
+    if (!inverter.movement.runPossible())
+    {
+      inverter.interlock.resting();
+    }
     if (zero || current.write.starts)
     {
       // Nobody knows whether the motor runs: it shall not.
@@ -289,9 +301,19 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
     finishExchange(current, reply, more);
+    if (more)
+    {
+      actOn(reply.finished_at, inverter, inverter.judgeWords(reply.finished_at));
+    }
     if (inverter.refresh.takeComplete())
     {
       judgeRefresh(reply.finished_at, inverter);
+    }
+    else if (!more)
+    {
+      // Alive, but it refuses to tell: the last good values keep their stamp.
+      inverter.noteExchangeError(reply.error_id);
+      publish(reply.finished_at, inverter);
     }
     return;
   }
@@ -316,9 +338,15 @@ void Coordinator::judgeRefresh(TimePoint now, Inverter& inverter)
   const Judgement judgement = inverter.judge(now);
   if (judgement.tripped)
   {
-    log(Level::Error, inverter.config.name + ": tripped: " + judgement.stop_reason);
+    log(Level::Error, inverter.config.name + ": tripped: " + judgement.trip_text);
     outputs_.traces.push_back(inverter.config.name + " tripped");
   }
+  actOn(now, inverter, judgement);
+  publish(now, inverter);
+}
+
+void Coordinator::actOn(TimePoint now, Inverter& inverter, const Judgement& judgement)
+{
   if (!judgement.stop_reason.empty())
   {
     requestStop(now, inverter, StopMode::Decelerate, true, judgement.stop_reason);
@@ -327,7 +355,6 @@ void Coordinator::judgeRefresh(TimePoint now, Inverter& inverter)
   {
     requestStop(now, inverter, StopMode::Decelerate, false, "");
   }
-  publish(now, inverter);
 }
 
 void Coordinator::doneSetting(const Current& current, const wire::Reply& reply)

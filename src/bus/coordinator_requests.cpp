@@ -14,6 +14,8 @@ namespace bus
 {
 namespace
 {
+constexpr double GROUP_ERROR_SHOWN_S = 1.0;
+
 /// Contract, section 2: which id counts if several apply.
 int rank(std::uint16_t error_id)
 {
@@ -109,10 +111,13 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
   applyVelocities(now, command, judged, error_id != 0);
   if (error_id == 0)
   {
-    group_error_ = 0;
+    clearGroupError(now, command.grouped);
     return 0;
   }
-  group_error_ = command.grouped ? error_id : group_error_;
+  if (command.grouped)
+  {
+    noteGroupError(now, error_id);
+  }
   for (std::size_t position = 0; position < judged.size(); ++position)
   {
     Inverter& inverter = *inverters_[command.targets[position].first];
@@ -120,6 +125,21 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
     inverter.refuseCommand(error_id, text.empty() ? "the group was refused: " + errorText(error_id) : text);
   }
   return error_id;
+}
+
+void Coordinator::noteGroupError(TimePoint now, std::uint16_t error_id)
+{
+  group_error_ = error_id;
+  group_error_at_ = now;
+}
+
+/// Stays until the next accepted group; other accepted commands end it too, but not before it was seen.
+void Coordinator::clearGroupError(TimePoint now, bool by_group)
+{
+  if (by_group || now - group_error_at_ > seconds(GROUP_ERROR_SHOWN_S))
+  {
+    group_error_ = 0;
+  }
 }
 
 void Coordinator::applyVelocities(TimePoint now, const VelocityCommand& command,
@@ -200,14 +220,13 @@ bool Coordinator::applyMove(TimePoint now, Inverter& inverter, const Publisher& 
 void Coordinator::refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id,
                          const std::string& text, bool group)
 {
-  static_cast<void>(now);
   for (const std::size_t index : indices)
   {
     inverters_[index]->refuseCommand(error_id, text);
   }
   if (group)
   {
-    group_error_ = error_id;
+    noteGroupError(now, error_id);
     log(Level::Warn, "grouped command refused: " + text);
   }
 }

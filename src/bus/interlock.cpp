@@ -170,10 +170,8 @@ void Interlock::zeroed(TimePoint now, const Publisher& publisher)
   Stream& stream = book(now, publisher);
   stream.neutral = true;
   stream.nonzero = false;
-  if (last_accepted_)
-  {
-    last_accepted_ = now;
-  }
+  // What was moving is on its way to rest, and the stop of a 0 insists by itself: nothing is left for the dead man.
+  last_accepted_.reset();
 }
 
 void Interlock::resting()

@@ -104,6 +104,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   offline_ = true;
   known_ = false;
   leftover_judged_ = false;
+  early_trip_ = false;
   exchange_error_ = error_id;
   interlock.offline();
   movement.drop();
@@ -140,9 +141,11 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
 {
-  const auto loopback = drive.loopback(config.node, number);
+  // Two ways to ask in turn, until it is known that the drive has the loop-back.
+  const bool by_loopback = loopback.proven() || (loopback.worthATry() && probes % 2 == 0);
+  const auto echo = by_loopback ? drive.loopback(config.node, number) : std::nullopt;
   wire::Request request =
-      loopback ? *loopback : drive.read(config.node, drive.runBlock() ? *drive.runBlock() : drive.fastBlocks().front());
+      echo ? *echo : drive.read(config.node, drive.runBlock() ? *drive.runBlock() : drive.fastBlocks().front());
   request = prepared(request);
   request.response_timeout = std::min(request.response_timeout, response_timeout);
   return request;
@@ -168,25 +171,43 @@ Judgement Inverter::judge(TimePoint now)
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
   const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
-  judgement.tripped = faulted && !interlock.isFaulted();
+  const bool new_trip = faulted && !interlock.isFaulted();
+  judgement.tripped = new_trip || early_trip_;
+  early_trip_ = false;
   interlock.faulted(faulted);
   if (judgement.tripped)
   {
     const std::uint16_t code = monitor.fault_code.value_or(0);
-    judgement.stop_reason =
+    judgement.trip_text =
         "trip " + std::to_string(code) + ": " + (code == 0 ? std::string("no reason given") : drive.faultText(code));
+    judgement.stop_reason = new_trip ? judgement.trip_text : std::string();
   }
-  judgeRun(monitor, judgement);
-  judgeOperation(now, monitor, judgement);
+  judgeRun(monitor, refresh.freshSentAt(), judgement);
+  judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
   compareMovement(now, monitor);
   leftover_judged_ = true;
   return judgement;
 }
 
-void Inverter::judgeRun(const drive::Monitor& monitor, Judgement& judgement)
+Judgement Inverter::judgeWords(TimePoint now)
+{
+  Judgement judgement;
+  const drive::Monitor& words = refresh.words();
+  if (words.faulted.value_or(false) && !interlock.isFaulted())
+  {
+    interlock.faulted(true);
+    early_trip_ = true;
+    judgement.stop_reason = "the drive has tripped";
+  }
+  judgeRun(words, refresh.wordsSentAt(), judgement);
+  judgeOperation(now, words, refresh.wordsSentAt(), judgement);
+  return judgement;
+}
+
+void Inverter::judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
 {
   // Words that were asked for before our last change of RUN say nothing about it.
-  const bool evidence = refresh.freshSentAt() >= movement.runChangedAt();
+  const bool evidence = sent_at >= movement.runChangedAt();
   if (!monitor.run_seen || !evidence || stop.pending())
   {
     return;
@@ -202,7 +223,7 @@ void Inverter::judgeRun(const drive::Monitor& monitor, Judgement& judgement)
   }
   if (movement.zeroUnverified() && !run_seen)
   {
-    movement.stopped(refresh.freshSentAt());
+    movement.stopped(sent_at);
     interlock.resting();
     return;
   }
@@ -223,7 +244,7 @@ void Inverter::judgeRun(const drive::Monitor& monitor, Judgement& judgement)
   }
 }
 
-void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Judgement& judgement)
+void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
 {
   const std::optional<bool>& operation = monitor.operation ? monitor.operation : monitor.running;
   if (!operation)
@@ -256,7 +277,7 @@ void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Judg
   operation_seen_ = operation_seen_ || *operation;
   const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
-                    refresh.freshSentAt() >= movement.runChangedAt();
+                    sent_at >= movement.runChangedAt();
   if (lasts(operation_off_since_, lost, now, OPERATION_LOST_S))
   {
     judgement.stop_reason = "the drive stopped without a stop of ours (STOP key, terminal or safe stop)";

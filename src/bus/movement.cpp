@@ -103,6 +103,7 @@ void Movement::aim(const Target& target)
 void Movement::drop()
 {
   target_.reset();
+  confirmed_target_.reset();
   active_ = false;
 }
 
@@ -182,6 +183,7 @@ void Movement::confirmed(const Write& write, TimePoint now)
     return;
   }
   active_ = false;
+  confirmed_target_ = target_;
   if (target_ && target_->zero)
   {
     zero_unverified_ = true;
@@ -197,14 +199,13 @@ void Movement::doubtful(const Write& write)
 void Movement::giveUp()
 {
   active_ = false;
-  if (!run_possible_)
-  {
-    target_.reset();
-  }
+  // What ran before goes on, and that is what is in force.
+  target_ = run_possible_ ? confirmed_target_ : std::nullopt;
 }
 
 void Movement::stopped(TimePoint now)
 {
+  confirmed_target_.reset();
   words_.clear();
   run_changed_at_ = now;
   run_command_ = false;

@@ -136,6 +136,8 @@ void Refresh::plan(TimePoint now)
   position_ = 0;
   fault_planned_ = false;
   scratch_ = drive::Monitor();
+  scratch_sent_at_ = TimePoint::max();
+  scratch_stamp_ = TimePoint();
   const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
   bool slow_planned = false;
   for (std::size_t step = 0; step < blocks_.size() && has_stamp_; ++step)
@@ -199,6 +201,12 @@ bool Refresh::advance()
   {
     return true;
   }
+  if (scratch_stamp_ == TimePoint())
+  {
+    // Every read was refused: that is no status.
+    failed();
+    return false;
+  }
   if (!scratch_.faulted.value_or(true) && drive_.reports("fault_code"))
   {
     scratch_.fault_code = 0;
@@ -207,6 +215,9 @@ bool Refresh::advance()
   position_ = 0;
   fresh_ = scratch_;
   fresh_sent_at_ = scratch_sent_at_;
+  // Only now: a stamp belongs to a whole status, not to half of a new one beside half of an old one.
+  stamp_ = scratch_stamp_;
+  has_stamp_ = true;
   complete_ = true;
   return false;
 }
@@ -228,10 +239,9 @@ bool Refresh::received(const wire::Reply& reply)
     const bool carries_run = block.values.run_seen || block.values.operation || block.values.running;
     if (carries_run)
     {
-      scratch_sent_at_ = reply.sent_at;
+      scratch_sent_at_ = std::min(scratch_sent_at_, reply.sent_at);
     }
-    stamp_ = reply.finished_at;
-    has_stamp_ = true;
+    scratch_stamp_ = reply.finished_at;
   }
   return advance();
 }
@@ -314,6 +324,16 @@ const drive::Monitor& Refresh::fresh() const
 TimePoint Refresh::freshSentAt() const
 {
   return fresh_sent_at_;
+}
+
+const drive::Monitor& Refresh::words() const
+{
+  return scratch_;
+}
+
+TimePoint Refresh::wordsSentAt() const
+{
+  return scratch_sent_at_;
 }
 
 TimePoint Refresh::stamp() const

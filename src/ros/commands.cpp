@@ -110,6 +110,7 @@ void Commands::onCommand(std::size_t index, const ros::MessageEvent<std_msgs::Fl
   bus::VelocityCommand command;
   command.targets.emplace_back(index, event.getConstMessage()->data);
   command.publisher = connections_[index].identify(event.getConnectionHeaderPtr());
+  command.publisher.topic = "inverter";
   bus_.command(command);
 }
 
@@ -120,6 +121,7 @@ void Commands::onGroup(const ros::MessageEvent<VelocityCommand const>& event)
   command.targets = std::move(group.targets);
   command.grouped = true;
   command.publisher = group_connections_.identify(event.getConnectionHeaderPtr());
+  command.publisher.topic = "group";
   if (!command.targets.empty())
   {
     bus_.command(command);

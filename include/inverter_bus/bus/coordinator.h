@@ -143,6 +143,9 @@ private:
   bool applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
   bool applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
 
+  void noteGroupError(TimePoint now, std::uint16_t error_id);
+  void clearGroupError(TimePoint now, bool by_group);
+
   // stops
   void requestStop(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
   void stopConfirmed(TimePoint now, Inverter& inverter);
@@ -191,6 +194,7 @@ private:
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void judgeRefresh(TimePoint now, Inverter& inverter);
+  void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);
   void publish(TimePoint now, const Inverter& inverter);
   BusStatus busStatus(TimePoint now) const;
   void log(Level level, const std::string& text);
@@ -217,6 +221,7 @@ private:
   Duration deadline_margin_{ 0 };
   std::uint16_t last_error_ = 0;
   std::uint16_t group_error_ = 0;
+  TimePoint group_error_at_;
   std::uint8_t last_node_ = 0;
   wire::LineCounters counters_;
   bool echo_found_ = false;

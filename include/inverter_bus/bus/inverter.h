@@ -28,8 +28,42 @@ struct Judgement
   std::string stop_reason;
   /// RUN is on although a command of 0 took it off: insist, without a lock.
   bool zero_failed = false;
-  /// The trip is new.
+  /// The trip is new; its reason in words.
   bool tripped = false;
+  std::string trip_text;
+};
+
+/// Whether the drive really has the loop-back that its profile promises. One that answers it with an exception has not,
+/// nor one that is silent on it time and again but answers other requests.
+class LoopbackKnowledge
+{
+public:
+  void note(wire::Outcome outcome)
+  {
+    works_ = works_ || outcome == wire::Outcome::Ok;
+    refused_ = refused_ || outcome == wire::Outcome::Exception;
+    ++misses_;
+  }
+  /// Worth sending where its answer is needed.
+  bool usable() const
+  {
+    return works_ || !(refused_ || misses_ >= MOST_MISSES);
+  }
+  /// Worth sending where its answer would be good news.
+  bool worthATry() const
+  {
+    return works_ || !refused_;
+  }
+  bool proven() const
+  {
+    return works_;
+  }
+
+private:
+  static constexpr unsigned MOST_MISSES = 3;
+  bool works_ = false;
+  bool refused_ = false;
+  unsigned misses_ = 0;
 };
 
 /// One inverter of the bus: its parts, its link, and what its words mean together.
@@ -48,6 +82,7 @@ public:
   Refresh refresh;
   DriveSettings settings;
   std::set<std::string> ram_changes;
+  LoopbackKnowledge loopback;
 
   // --- link -------------------------------------------------------------------------------------------------------
   /// A valid reply came. Returns true if the inverter was offline or unknown before.
@@ -72,6 +107,8 @@ public:
   // --- status -----------------------------------------------------------------------------------------------------
   /// After a complete refresh.
   Judgement judge(TimePoint now);
+  /// After each read of a refresh that goes on: what concerns safety is not put off until the rest has come, or not come.
+  Judgement judgeWords(TimePoint now);
   InverterStatus status(TimePoint now) const;
   std::vector<Finding> findings(TimePoint now) const;
   std::vector<std::pair<std::string, std::string>> values(TimePoint now) const;
@@ -91,8 +128,8 @@ public:
   unsigned probes = 0;
 
 private:
-  void judgeRun(const drive::Monitor& monitor, Judgement& judgement);
-  void judgeOperation(TimePoint now, const drive::Monitor& monitor, Judgement& judgement);
+  void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
+  void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
   std::vector<Finding> errors() const;
 
@@ -120,6 +157,7 @@ private:
   double last_frequency_ = 0.0;
   bool unexpected_motion_ = false;
   bool leftover_judged_ = false;
+  bool early_trip_ = false;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -97,6 +97,8 @@ private:
   std::map<std::string, std::uint32_t> stop_values_;
   std::map<std::string, std::uint32_t> words_;
   std::optional<Target> target_;
+  /// The last one that the drive has confirmed.
+  std::optional<Target> confirmed_target_;
   bool active_ = false;
   bool run_command_ = false;
   bool run_possible_ = false;

@@ -41,6 +41,9 @@ public:
   /// The run words of the last complete refresh and when their request left.
   const drive::Monitor& fresh() const;
   TimePoint freshSentAt() const;
+  /// The same of the refresh under way: what has come so far.
+  const drive::Monitor& words() const;
+  TimePoint wordsSentAt() const;
   TimePoint stamp() const;
   bool hasStamp() const;
   /// Nothing that was read counts any more (inverter offline).
@@ -80,6 +83,7 @@ private:
   std::size_t slow_cursor_ = 0;
   drive::Monitor scratch_;
   TimePoint scratch_sent_at_;
+  TimePoint scratch_stamp_;
   TimePoint scratch_time_;
   TimePoint asked_at_;
   bool fault_planned_ = false;

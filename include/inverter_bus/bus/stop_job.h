@@ -63,6 +63,8 @@ private:
   std::uint16_t last_error_ = 0;
   TimePoint requested_at_;
   bool first_frame_left_ = false;
+  /// The read-back has worked before.
+  bool has_told_ = false;
   /// Counts changes of what is to be done, and which one the frame on the wire belongs to.
   unsigned version_ = 0;
   unsigned version_on_wire_ = 0;

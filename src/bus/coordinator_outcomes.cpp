@@ -52,7 +52,7 @@ void Coordinator::done(const wire::Reply& reply)
     portLost(reply.finished_at);
     return;
   }
-  last_error_ = alive(reply) ? 0 : reply.error_id;
+  last_error_ = reply.outcome == wire::Outcome::Ok ? std::uint16_t{ 0 } : reply.error_id;
   if (current.purpose == Purpose::Broadcast)
   {
     meter_.exchange(reply.sent_at, reply.finished_at, Duration{ 0 });
@@ -434,7 +434,8 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   if (!port_complained_)
   {
     port_complained_ = true;
-    log(in_use ? Level::Warn : Level::Error, error + "; the node keeps trying");
+    log(in_use ? Level::Warn : Level::Error,
+        error + (in_use ? "; trying again for a while" : "; the node keeps trying"));
     portLost(now);
   }
 }

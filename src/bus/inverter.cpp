@@ -79,6 +79,7 @@ bool Inverter::answered(const wire::Reply& reply)
   if (offline_)
   {
     offline_ = false;
+    loopback.tryAgain();
     ++returns_;
   }
   return back;

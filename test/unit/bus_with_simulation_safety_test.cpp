@@ -263,6 +263,43 @@ TEST(Safety, shutdownStopsWhatMayRunAndConfirms)
   EXPECT_EQ(bus.command(0, 20.0), bus::ERROR_SHUTTING_DOWN);
 }
 
+TEST(Safety, aTripIsActedUponAlthoughTheRestOfTheStatusIsLost)
+{
+  VirtualBus bus(ONE_BELT);
+  bus.settleIn();
+  bus.stream(0, 20.0, 0.1, 5.0);
+  bus.run(1.0);
+  bus.world("belt lost_reply count 0 function 3");
+  bus.world("belt trip 7");
+  bus.run(2.0);
+  EXPECT_EQ(bus.motor("belt", "run_coil"), 0);
+}
+
+TEST(Safety, aStatusOfWhichHalfIsLostKeepsItsOldStamp)
+{
+  VirtualBus bus(ONE_BELT);
+  bus.settleIn();
+  bus.world("belt lost_reply count 0 function 3");
+  bus.run(0.5);
+  const TimePoint stamp = bus.status(0).stamp;
+  bus.run(3.0);
+  EXPECT_EQ(bus.status(0).stamp, stamp);
+  EXPECT_NE(bus.status(0).error_id, 0);
+}
+
+TEST(Safety, aSingleZeroLocksNothingHoweverLongTheCycle)
+{
+  VirtualBus bus("port: /dev/virtual\ninterval: 3.0\nscan_list:\n  - {name: belt, node: 1, drive: omron_mx2}\n");
+  ASSERT_TRUE(bus.runUntil(12.0, [&] { return bus.hasStatus(0) && !bus.status(0).locked; }));
+  ASSERT_EQ(bus.command(0, 20.0), 0);
+  bus.run(0.3);
+  ASSERT_EQ(bus.motor("belt", "run_coil"), 1);
+  bus.command(0, 0.0);
+  bus.run(1.0);
+  EXPECT_EQ(bus.motor("belt", "run_coil"), 0);
+  EXPECT_EQ(bus.command(0, 20.0), 0);
+}
+
 TEST(Safety, refusedVelocitiesSendNothing)
 {
   VirtualBus bus(ONE_BELT);

@@ -44,6 +44,11 @@ public:
     refused_ = refused_ || outcome == wire::Outcome::Exception;
     ++misses_;
   }
+  /// The drive has come back: another one may stand there now.
+  void tryAgain()
+  {
+    misses_ = 0;
+  }
   /// Worth sending where its answer is needed.
   bool usable() const
   {

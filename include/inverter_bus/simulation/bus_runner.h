@@ -4,6 +4,7 @@
 #ifndef INVERTER_BUS_SIMULATION_BUS_RUNNER_H
 #define INVERTER_BUS_SIMULATION_BUS_RUNNER_H
 
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -48,7 +49,7 @@ private:
   PseudoTerminal terminal_;
   std::mutex mutex_;
   int wake_;
-  volatile bool stop_ = false;
+  std::atomic<bool> stop_{ false };
   int command_descriptor_ = -1;
   std::string command_text_;
   std::function<void(const std::string&)> answer_;

@@ -69,7 +69,8 @@ public:
   bool deadManDue(TimePoint now) const;
   /// When deadManDue() becomes true if nothing comes; nothing: never.
   std::optional<TimePoint> deadManAt() const;
-  /// What status shows: true while a new command would be refused or a stream of commands goes on being refused.
+  /// What status shows: true while nobody has returned to neutral and a stream goes on being refused, or the lock's reason
+  /// is not over. False, a publisher whose stream has never paused is still refused: the lock counts per publisher.
   bool locked(TimePoint now) const;
   bool stopPending() const;
   bool isOffline() const;

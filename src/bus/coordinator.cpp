@@ -400,7 +400,9 @@ void Coordinator::sent(TimePoint now)
   }
   if (current_->purpose == Purpose::StopFrame && !current_->resync)
   {
-    if (const auto latency = inverter.stop.sent(now))
+    const auto latency = inverter.stop.sent(now);
+    // An inverter that can't be reached, or a port that was gone, is no measure of the scheduler's latency.
+    if (latency && !current_->pick.probe)
     {
       noteStopLatency(*latency);
     }

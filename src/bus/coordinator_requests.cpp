@@ -321,6 +321,7 @@ void Coordinator::finishStopCalls(TimePoint now)
       call->problems.push_back(stopProblem(*inverters_[index]));
       const std::uint16_t error_id = inverters_[index]->stop.lastError();
       call->error_id = error_id != 0 ? error_id : wire::ERROR_TIMEOUT;
+      call->error_id = connected_ ? call->error_id : wire::ERROR_PORT_LOST;
     }
     Answer reply;
     reply.success = call->problems.empty();

@@ -13,9 +13,10 @@ SAFE = {'C076': 4, 'C077': 2.0}  # on communication loss: decelerate after 2 s
 class Diagnostics(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.bench = Bench(belts(3), simulation={'belt_1': {'parameters': SAFE},
-                                                'belt_2': {'parameters': {'C076': 2, 'C077': 0.0}},
-                                                'belt_3': {'parameters': dict(SAFE, A002=2)}})
+        # The pauses are where a second master's frame stands alone; without them it mostly collides with ours.
+        cls.bench = Bench(belts(3), interval=0.5, simulation={'belt_1': {'parameters': SAFE},
+                                                              'belt_2': {'parameters': {'C076': 2, 'C077': 0.0}},
+                                                              'belt_3': {'parameters': dict(SAFE, A002=2)}})
         cls.bench.start_driver()
 
     @classmethod

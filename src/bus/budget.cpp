@@ -54,14 +54,18 @@ std::vector<wire::Request> Budget::requests(std::size_t index) const
   return requests;
 }
 
+Duration Budget::readCost(std::size_t index, const drive::ReadBlock& block) const
+{
+  const drive::Drive& drive = configuration_.drives[index];
+  return line_.cost(drive.read(configuration_.bus.inverters[index].node, block), seconds(drive.profile().reply_delay));
+}
+
 Duration Budget::refreshCost(std::size_t index) const
 {
-  const InverterConfig& config = configuration_.bus.inverters[index];
-  const drive::Drive& drive = configuration_.drives[index];
   Duration cost{ 0 };
-  for (const drive::ReadBlock& block : drive.fastBlocks())
+  for (const drive::ReadBlock& block : configuration_.drives[index].fastBlocks())
   {
-    cost += line_.cost(drive.read(config.node, block), seconds(drive.profile().reply_delay));
+    cost += readCost(index, block);
   }
   return cost;
 }
@@ -148,9 +152,7 @@ Duration Budget::deadlineMargin() const
     Duration read{ 0 };
     for (const drive::ReadBlock& block : configuration_.drives[index].fastBlocks())
     {
-      read =
-          std::max(read, line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block),
-                                    seconds(configuration_.drives[index].profile().reply_delay)));
+      read = std::max(read, readCost(index, block));
     }
     margin += read + velocityUnit(index);
   }
@@ -159,14 +161,29 @@ Duration Budget::deadlineMargin() const
 
 std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Duration timeout) const
 {
-  const Duration gap = deadlineMargin();
-  if (timeout > gap)
+  return judgeDriveTimeout(name, timeout, deadlineMargin());
+}
+
+std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Duration timeout, Duration margin)
+{
+  if (timeout > margin)
   {
     return std::nullopt;
   }
   return Finding{ Level::Warn, name + ": its own communication time-out of " + milliseconds(timeout) +
-                                   " can't be met for certain: up to " + milliseconds(gap) +
+                                   " can't be met for certain: up to " + milliseconds(margin) +
                                    " may lie between two frames; raise it, or the baud rate, or take fewer inverters" };
+}
+
+Budget::Figures Budget::figures() const
+{
+  Figures figures;
+  figures.cycle = cycle();
+  figures.worst_stop = worstStop();
+  figures.longest_exchange = longestExchange();
+  figures.deadline_margin = deadlineMargin();
+  figures.findings = findings();
+  return figures;
 }
 
 std::vector<Finding> Budget::findings() const

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "inverter_bus/bus/budget.h"
-
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
 
@@ -30,7 +28,7 @@ constexpr double BUS_STATUS_LONGEST_S = 0.9;
 }  // namespace
 
 Coordinator::Coordinator(const Configuration& configuration, const wire::Line& line)
-  : configuration_(configuration), line_(line)
+  : configuration_(configuration), line_(line), budget_(Budget(configuration, line).figures())
 {
   for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
   {
@@ -46,9 +44,6 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   last_published_.resize(inverters_.size());
   shutdown_tried_.resize(inverters_.size(), false);
   released_.resize(inverters_.size(), false);
-  const Budget budget(configuration, line);
-  longest_exchange_ = budget.longestExchange();
-  deadline_margin_ = budget.deadlineMargin();
 }
 
 Coordinator::~Coordinator() = default;
@@ -141,7 +136,7 @@ std::vector<InverterView> Coordinator::views(TimePoint now) const
   views.reserve(inverters_.size());
   for (const auto& inverter : inverters_)
   {
-    views.push_back(inverter->view(now, deadline_margin_));
+    views.push_back(inverter->view(now, budget_.deadline_margin));
   }
   return views;
 }
@@ -321,6 +316,7 @@ Coordinator::Current Coordinator::composeProbe(const Pick& pick)
   current.pick = pick;
   current.purpose = Purpose::Probe;
   current.inverter = pick.inverter;
+  current.loopback = inverter.probesByLoopback() && inverter.drive.loopback(inverter.config.node, 0).has_value();
   current.request = inverter.probe(++loopback_number_, probeTimeout(inverter));
   ++inverter.probes;
   return current;
@@ -364,6 +360,7 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     current.request = inverter.prepared(*loopback);
     current.request.response_timeout = timeout;
     current.resync = true;
+    current.loopback = true;
     return true;
   }
   if (current.purpose == Purpose::StopFrame)
@@ -424,7 +421,7 @@ Duration Coordinator::longestReplyDelay() const
 void Coordinator::noteStopLatency(Duration latency)
 {
   stop_latency_max_ = std::max(stop_latency_max_, latency);
-  if (latency > longest_exchange_ + longestReplyDelay() + line_.timing().characters(64))
+  if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64))
   {
     outputs_.traces.push_back("stop took " + std::to_string(toSeconds(latency)) + " s to the wire");
   }

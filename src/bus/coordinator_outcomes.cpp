@@ -15,8 +15,6 @@ namespace
 // A velocity unit that newer and newer targets keep going makes room for others after so many frames per inverter.
 constexpr unsigned MOST_FRAMES_PER_UNIT = 8;
 
-constexpr std::uint8_t LOOPBACK = 0x08;
-
 bool alive(const wire::Reply& reply)
 {
   return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
@@ -63,9 +61,8 @@ void Coordinator::done(const wire::Reply& reply)
   {
     log(Level::Ok, inverter.config.name + ": online");
   }
-  const bool loopback_probe =
-      current.purpose == Purpose::Probe && current.request.pdu.front() == LOOPBACK && alive(reply);
-  if (current.resync || loopback_probe)
+  // A probe that nobody answers says nothing of the loop-back: the drive is away.
+  if (current.loopback && (current.resync || alive(reply)))
   {
     inverter.loopback.note(reply.outcome);
   }
@@ -468,7 +465,7 @@ void Coordinator::portLost(TimePoint now)
 void Coordinator::beginShutdown(TimePoint now)
 {
   shutting_down_ = true;
-  const double two_exchanges_each = 2.0 * toSeconds(longest_exchange_) * static_cast<double>(inverters_.size());
+  const double two_exchanges_each = 2.0 * toSeconds(budget_.longest_exchange) * static_cast<double>(inverters_.size());
   shutdown_deadline_ = now + seconds(std::min(10.0, std::max(2.0, two_exchanges_each)));
   for (const auto& inverter : inverters_)
   {

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include <cstdio>
 
-#include "inverter_bus/bus/budget.h"
 #include "inverter_bus/bus/coordinator.h"
 
 // What the coordinator tells: status, diagnostics, answers.
@@ -74,14 +73,13 @@ PendingAnswers Coordinator::takeAnswers()
 
 std::vector<Finding> Coordinator::budget() const
 {
-  return Budget(configuration_, line_).findings();
+  return budget_.findings;
 }
 
 Report Coordinator::report(TimePoint now) const
 {
   Report report;
   report.bus = busStatus(now);
-  const Budget budget(configuration_, line_);
   if (!connected_)
   {
     report.findings.push_back(
@@ -101,7 +99,7 @@ Report Coordinator::report(TimePoint now) const
                                 "interval is longer than a drive's own communication time-out allows and is "
                                 "cut short" });
   }
-  for (const Finding& finding : budget.findings())
+  for (const Finding& finding : budget_.findings)
   {
     if (finding.level != Level::Ok)
     {
@@ -110,10 +108,10 @@ Report Coordinator::report(TimePoint now) const
   }
   report.values.emplace_back("port", configuration_.bus.port);
   report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
-  report.values.emplace_back("computed cycle", rounded(toSeconds(budget.cycle()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("computed cycle", rounded(toSeconds(budget_.cycle) * 1e3, "%.1f ms"));
   report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
   report.values.emplace_back("worst stop latency, computed",
-                             rounded(toSeconds(budget.worstStop() + longestReplyDelay()) * 1e3, "%.1f ms"));
+                             rounded(toSeconds(budget_.worst_stop + longestReplyDelay()) * 1e3, "%.1f ms"));
   report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));
@@ -128,7 +126,7 @@ Report Coordinator::report(TimePoint now) const
     const auto timeout = inverter->settings.driveTimeout();
     if (timeout && !inverter->drive.profile().communication_loss.timeout_parameter.empty())
     {
-      if (const auto finding = budget.judgeDriveTimeout(entry.name, *timeout))
+      if (const auto finding = Budget::judgeDriveTimeout(entry.name, *timeout, budget_.deadline_margin))
       {
         entry.findings.push_back(*finding);
       }
@@ -136,45 +134,6 @@ Report Coordinator::report(TimePoint now) const
     report.inverters.push_back(entry);
   }
   return report;
-}
-
-std::string errorText(std::uint16_t error_id)
-{
-  switch (error_id)
-  {
-    case ERROR_NONE:
-      return "normal completion";
-    case wire::ERROR_TIMEOUT:
-      return "no reply in time";
-    case wire::ERROR_DAMAGED:
-      return "damaged or foreign reply";
-    case wire::ERROR_PORT_LOST:
-      return "the port is gone";
-    case ERROR_OUT_OF_RANGE:
-      return "an input is out of range";
-    case ERROR_OFFLINE:
-      return "the inverter is offline";
-    case ERROR_CANCELLED:
-      return "cancelled by a stop";
-    case ERROR_SHUTTING_DOWN:
-      return "the node is shutting down";
-    case ERROR_NOT_OFFERED:
-      return "not offered by this drive";
-    case ERROR_LOCKED:
-      return "locked: send 0, or stay silent for a moment, before the next movement";
-    case ERROR_NOT_ARMED:
-      return "not armed: values of the profile are missing or unconfirmed";
-    default:
-      break;
-  }
-  char text[48];
-  if (error_id >= 0x8000)
-  {
-    std::snprintf(text, sizeof text, "the drive answered exception %02XH", error_id & 0xFFU);
-    return text;
-  }
-  std::snprintf(text, sizeof text, "response code %04X", error_id);
-  return text;
 }
 }  // namespace bus
 }  // namespace inverter_bus

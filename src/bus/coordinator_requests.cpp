@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "inverter_bus/bus/budget.h"
 #include "inverter_bus/bus/coordinator.h"
 
 // What users ask of the bus: velocities, stops and services.
@@ -366,7 +365,7 @@ ServiceBounds Coordinator::bounds() const
 {
   ServiceBounds bounds;
   // Slow buses and long scan lists get more time; the README states how much.
-  const double exchange = toSeconds(longest_exchange_);
+  const double exchange = toSeconds(budget_.longest_exchange);
   const double inverters = static_cast<double>(inverters_.size());
   bounds.stop = std::max(bounds.stop, 3.0 * exchange * inverters);
   bounds.reset = std::max(bounds.reset, 40.0 * exchange);

@@ -140,11 +140,15 @@ wire::Request Inverter::prepared(wire::Request request) const
   return request;
 }
 
-wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
+bool Inverter::probesByLoopback() const
 {
   // Two ways to ask in turn, until it is known that the drive has the loop-back.
-  const bool by_loopback = loopback.proven() || (loopback.worthATry() && probes % 2 == 0);
-  const auto echo = by_loopback ? drive.loopback(config.node, number) : std::nullopt;
+  return loopback.proven() || (loopback.worthATry() && probes % 2 == 0);
+}
+
+wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
+{
+  const auto echo = probesByLoopback() ? drive.loopback(config.node, number) : std::nullopt;
   wire::Request request =
       echo ? *echo : drive.read(config.node, drive.runBlock() ? *drive.runBlock() : drive.fastBlocks().front());
   request = prepared(request);

@@ -16,8 +16,6 @@ constexpr double SLOW_MARGIN_S = 0.1;
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
 constexpr double POSTPONED_S = 0.5;
-// Modbus exceptions 01 to 03 (function, address, count) speak of the request itself; later ones of the moment.
-constexpr std::uint8_t LAST_LASTING_EXCEPTION = 0x03;
 
 template <typename T>
 void take(const std::optional<T>& from, std::optional<T>& to)
@@ -182,7 +180,7 @@ void Refresh::planFaultReads()
   fault_planned_ = true;
   for (std::size_t index = 0; index < blocks_.size(); ++index)
   {
-    if (blocks_[index].kind == Class::Fault && scratch_time_ >= blocks_[index].left_out_until)
+    if (blocks_[index].kind == Class::Fault && asked_at_ >= blocks_[index].left_out_until)
     {
       plan_.push_back(index);
     }
@@ -224,7 +222,6 @@ bool Refresh::advance()
 
 bool Refresh::received(const wire::Reply& reply)
 {
-  scratch_time_ = reply.finished_at;
   Block& block = blocks_[plan_[position_]];
   block.values = drive::Monitor();
   drive_.decode(block.read, reply.pdu, block.values);
@@ -248,8 +245,7 @@ bool Refresh::received(const wire::Reply& reply)
 
 bool Refresh::refused(const wire::Reply& reply)
 {
-  const std::uint8_t code = reply.pdu.size() > 1 ? reply.pdu[1] : std::uint8_t{ 0 };
-  if (code > LAST_LASTING_EXCEPTION)
+  if (!isLastingRefusal(reply))
   {
     // Busy, or locked for the moment: nothing is known, and nothing follows for later refreshes.
     return postpone();

@@ -6,12 +6,6 @@ namespace inverter_bus
 {
 namespace bus
 {
-namespace
-{
-// Modbus exceptions 01 to 03 (function, address, count) speak of the request itself; later ones of the moment.
-constexpr std::uint8_t LAST_LASTING_EXCEPTION = 0x03;
-}  // namespace
-
 StopJob::StopJob(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
 {
 }
@@ -93,9 +87,7 @@ StopJob::Progress StopJob::done(const wire::Reply& reply)
     // The mode was upgraded while this frame was on its way: its answer says nothing of the new one.
     return Progress::GoesOn;
   }
-  const bool refused =
-      reply.outcome == wire::Outcome::Exception && reply.pdu.size() > 1 && reply.pdu[1] <= LAST_LASTING_EXCEPTION;
-  if (written() && refused && !has_told_)
+  if (written() && isLastingRefusal(reply) && !has_told_)
   {
     // This drive has never had such a read: it can't tell, so that the acknowledged write has to do.
     confirm();

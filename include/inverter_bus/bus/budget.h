@@ -19,6 +19,16 @@ namespace bus
 class Budget
 {
 public:
+  /// Everything that the running bus needs of it, to be computed once.
+  struct Figures
+  {
+    Duration cycle{ 0 };
+    Duration worst_stop{ 0 };
+    Duration longest_exchange{ 0 };
+    Duration deadline_margin{ 0 };
+    std::vector<Finding> findings;
+  };
+
   Budget(const Configuration& configuration, const wire::Line& line);
 
   /// One status cycle of all inverters without commands, slow values included in proportion.
@@ -33,13 +43,17 @@ public:
   Duration deadlineMargin() const;
   /// The longest exchange in use: its reply begins when its time is almost up.
   Duration longestExchange() const;
+  Figures figures() const;
 
   /// Lines for the log: the figures, and WARN where a time-out can't be met.
   std::vector<Finding> findings() const;
   /// WARN if a drive's own \p timeout can't be met.
   std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout) const;
+  /// The same with deadlineMargin() at hand.
+  static std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout, Duration margin);
 
 private:
+  Duration readCost(std::size_t index, const drive::ReadBlock& block) const;
   Duration refreshCost(std::size_t index) const;
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;

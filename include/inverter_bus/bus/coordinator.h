@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/budget.h"
 #include "inverter_bus/bus/bus.h"
 #include "inverter_bus/bus/inverter.h"
 #include "inverter_bus/bus/jobs.h"
@@ -113,6 +114,8 @@ private:
     wire::Request request;
     /// A loop-back that makes sure that no late reply is on its way; the real request follows.
     bool resync = false;
+    /// The request is a loop-back, as a probe or for resync.
+    bool loopback = false;
     Write write;
     CommandId job = 0;
   };
@@ -201,6 +204,8 @@ private:
 
   const Configuration& configuration_;
   const wire::Line& line_;
+  /// Of the configuration alone: it does not change while the bus runs.
+  const Budget::Figures budget_;
   std::vector<std::unique_ptr<Inverter>> inverters_;
   std::unique_ptr<Scheduler> scheduler_;
   LoadMeter meter_;
@@ -217,8 +222,6 @@ private:
   std::uint64_t reconnects_ = 0;
   bool ever_opened_ = false;
   Duration stop_latency_max_{ 0 };
-  Duration longest_exchange_{ 0 };
-  Duration deadline_margin_{ 0 };
   std::uint16_t last_error_ = 0;
   std::uint16_t group_error_ = 0;
   TimePoint group_error_at_;

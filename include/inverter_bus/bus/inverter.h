@@ -103,6 +103,8 @@ public:
   void expectSilence(TimePoint until);
 
   wire::Request prepared(wire::Request request) const;
+  /// The next probe() is a loop-back, if the drive's profile has one.
+  bool probesByLoopback() const;
   /// The question that shows whether an offline drive is back.
   wire::Request probe(std::uint16_t number, Duration response_timeout) const;
   /// Longest turnaround seen while the drive answered.

@@ -84,7 +84,6 @@ private:
   drive::Monitor scratch_;
   TimePoint scratch_sent_at_;
   TimePoint scratch_stamp_;
-  TimePoint scratch_time_;
   TimePoint asked_at_;
   bool fault_planned_ = false;
   drive::Monitor fresh_;

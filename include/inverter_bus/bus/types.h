@@ -30,6 +30,10 @@ constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
 /// One sentence for an error id that needs no drive to explain it.
 std::string errorText(std::uint16_t error_id);
 
+/// The drive has no such request: Modbus exceptions 01 to 03 (function, address, count) speak of the request itself, later
+/// ones of the moment (busy, locked, running).
+bool isLastingRefusal(const wire::Reply& reply);
+
 enum class StopMode : std::uint8_t
 {
   Decelerate = 0,

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <cstdio>
+
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+constexpr std::uint8_t LAST_LASTING_EXCEPTION = 0x03;
+}  // namespace
+
+bool isLastingRefusal(const wire::Reply& reply)
+{
+  return reply.outcome == wire::Outcome::Exception && reply.pdu.size() > 1 && reply.pdu[1] <= LAST_LASTING_EXCEPTION;
+}
+
+std::string errorText(std::uint16_t error_id)
+{
+  switch (error_id)
+  {
+    case ERROR_NONE:
+      return "normal completion";
+    case wire::ERROR_TIMEOUT:
+      return "no reply in time";
+    case wire::ERROR_DAMAGED:
+      return "damaged or foreign reply";
+    case wire::ERROR_PORT_LOST:
+      return "the port is gone";
+    case ERROR_OUT_OF_RANGE:
+      return "an input is out of range";
+    case ERROR_OFFLINE:
+      return "the inverter is offline";
+    case ERROR_CANCELLED:
+      return "cancelled by a stop";
+    case ERROR_SHUTTING_DOWN:
+      return "the node is shutting down";
+    case ERROR_NOT_OFFERED:
+      return "not offered by this drive";
+    case ERROR_LOCKED:
+      return "locked: send 0, or stay silent for a moment, before the next movement";
+    case ERROR_NOT_ARMED:
+      return "not armed: values of the profile are missing or unconfirmed";
+    default:
+      break;
+  }
+  char text[48];
+  if (error_id >= 0x8000)
+  {
+    std::snprintf(text, sizeof text, "the drive answered exception %02XH", error_id & 0xFFU);
+    return text;
+  }
+  std::snprintf(text, sizeof text, "response code %04X", error_id);
+  return text;
+}
+}  // namespace bus
+}  // namespace inverter_bus

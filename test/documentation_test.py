@@ -81,7 +81,7 @@ class Readme(unittest.TestCase):
     def testChoicesAndTheirDefaultsAreThoseOfTheCode(self):
         rows = {row[0]: row for row in table(self.readme, '### The bus')}
         choices = re.findall(r'choice\("(\w+)", "(\w+)",\s*\{([^}]*)\}\)', self.configuration)
-        self.assertEqual(sorted(name for name, _, _ in choices), ['parameter_access', 'parity', 'protocol', 'rs485'])
+        self.assertEqual(sorted(name for name, _, _ in choices), ['parameter_access', 'protocol', 'rs485'])
         for name, default, values in choices:
             self.assertEqual(rows[name][2], default, name)
             self.assertEqual(re.findall(r'\w+', rows[name][3]), re.findall(r'\w+', values), name)

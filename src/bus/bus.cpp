@@ -24,9 +24,8 @@ struct Bus::Implementation
     : configuration(std::move(given))
     , port(std::move(given_port))
     , observer(given_observer)
-    , protocol(wire::makeModbusRtu())
-    , line(*port, *protocol, clock,
-           wire::LineTiming(configuration.bus.serial.baud_rate, wire::bitsPerCharacter(configuration.bus.serial)))
+    , protocol(makeProtocol(configuration.bus))
+    , line(*port, *protocol, clock, makeTiming(configuration.bus))
     , coordinator(configuration, line)
     , loop(coordinator, line, clock, mutex)
   {

@@ -39,25 +39,45 @@ const std::vector<std::string> BUS_KEYS{ "port",
                                          "scan_list",
                                          "simulation" };
 
-std::string readPort(const Section& section, const std::string& fallback)
+/// "/dev/ttyUSB0", "tcp://host[:port]", "rtu+tcp://host:port".
+void readPort(const Section& section, BusConfig& bus)
 {
-  const char* const allowed = "a serial device, such as /dev/ttyUSB0";
-  std::string port = section.text("port", fallback);
-  if (port.find("://") != std::string::npos)
+  const std::string allowed =
+      "a serial device such as /dev/ttyUSB0, tcp://host[:port] (Modbus TCP gateway), or "
+      "rtu+tcp://host:port (RTU frames over TCP)";
+  bus.port = section.text("port", bus.port);
+  const std::size_t scheme_end = bus.port.find("://");
+  if (bus.port.empty())
   {
-    section.fail("port", "names a network, and this version serves serial ports", allowed);
+    section.fail("port", "is empty", allowed);
   }
-  return port;
+  if (scheme_end == std::string::npos)
+  {
+    return;
+  }
+  const std::string scheme = bus.port.substr(0, scheme_end);
+  if (scheme != "tcp" && scheme != "rtu+tcp")
+  {
+    section.fail("port", "names an unknown kind of network", allowed);
+  }
+  bus.modbus_tcp = scheme == "tcp";
+  std::string error;
+  bus.gateway =
+      wire::parseTcpAddress(bus.port.substr(scheme_end + 3), bus.modbus_tcp ? wire::MODBUS_TCP_PORT : 0, error);
+  if (!bus.gateway)
+  {
+    section.fail("port", "is no address: " + error, allowed);
+  }
 }
 
-std::string readProtocol(const Section& section)
+std::string readProtocol(const Section& section, const BusConfig& bus)
 {
-  const Value* value = section.find("protocol");
-  if (value != nullptr && value->type == Value::Type::Text && value->text == "compoway_f")
+  const std::string protocol = section.choice("protocol", "modbus_rtu", { "modbus_rtu", "compoway_f" });
+  if (protocol == "compoway_f" && bus.gateway)
   {
-    section.fail("protocol", "is not served by this version", "modbus_rtu");
+    section.fail("protocol", "does not go over " + bus.port, "modbus_rtu, or a serial device as port");
   }
-  return section.choice("protocol", "modbus_rtu", { "modbus_rtu" });
+  return protocol;
 }
 
 unsigned readBaudRate(const Section& section, unsigned fallback)
@@ -70,9 +90,9 @@ unsigned readBaudRate(const Section& section, unsigned fallback)
   return static_cast<unsigned>(section.choice("baud_rate", fallback, rates));
 }
 
-wire::Parity readParity(const Section& section)
+wire::Parity readParity(const Section& section, const std::string& fallback)
 {
-  const std::string parity = section.choice("parity", "none", { "none", "even", "odd" });
+  const std::string parity = section.choice("parity", fallback, { "none", "even", "odd" });
   return parity == "even" ? wire::Parity::Even : parity == "odd" ? wire::Parity::Odd : wire::Parity::None;
 }
 
@@ -90,13 +110,16 @@ wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
   wire::SerialSettings serial;
   serial.device = bus.port;
   serial.baud_rate = readBaudRate(section, serial.baud_rate);
-  serial.parity = readParity(section);
-  serial.data_bits = static_cast<unsigned>(section.choice("data_bits", 8, { 7, 8 }));
-  if (serial.data_bits != 8)
+  // The factory settings of OMRON's CompoWay/F devices are 7E2; a Modbus RTU character has 8 data bits.
+  const bool compoway = bus.protocol == "compoway_f";
+  serial.parity = readParity(section, compoway ? "even" : "none");
+  serial.data_bits = static_cast<unsigned>(section.choice("data_bits", compoway ? 7 : 8, { 7, 8 }));
+  if (serial.data_bits != 8 && !compoway)
   {
     section.fail("data_bits", "is too few for modbus_rtu, whose characters have 8", "8");
   }
-  serial.stop_bits = static_cast<unsigned>(section.choice("stop_bits", 1, { 1, 2 }));
+  serial.stop_bits = static_cast<unsigned>(section.choice("stop_bits", compoway ? 2 : 1, { 1, 2 }));
+  serial.transmission = compoway ? wire::Transmission::Plain : wire::Transmission::Modbus;
   serial.rs485 = readRs485(section);
   serial.exclusive = bus.exclusive;
   return serial;
@@ -105,8 +128,8 @@ wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
 BusConfig readBus(const Section& section)
 {
   BusConfig bus;
-  bus.port = readPort(section, bus.port);
-  bus.protocol = readProtocol(section);
+  readPort(section, bus);
+  bus.protocol = readProtocol(section, bus);
   bus.interval = section.number("interval", bus.interval, Range{ 0.0, 655.35, false, "s" });
   bus.response_timeout = section.number("response_timeout", bus.response_timeout, Range{ 0.0, 10.0, true, "s" });
   bus.retries = static_cast<int>(section.integer("retries", bus.retries, 0, 10));
@@ -159,6 +182,16 @@ void checkSerial(const Section& section, const wire::SerialSettings& serial, con
   checkSetting(section, "parity", PARITIES.at(serial.parity), profile.parities, inverter);
   checkSetting(section, "data_bits", serial.data_bits, profile.data_bits, inverter);
   checkSetting(section, "stop_bits", serial.stop_bits, profile.stop_bits, inverter);
+  static const std::map<wire::Parity, std::string> LETTERS{ { wire::Parity::None, "N" },
+                                                            { wire::Parity::Even, "E" },
+                                                            { wire::Parity::Odd, "O" } };
+  const std::string character =
+      std::to_string(serial.data_bits) + LETTERS.at(serial.parity) + std::to_string(serial.stop_bits);
+  if (!profile.characters.empty() && profile.characters.count(character) == 0)
+  {
+    section.fail("stop_bits", character + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
+                 join({ profile.characters.begin(), profile.characters.end() }));
+  }
 }
 
 void checkUnique(const Section& entry, const InverterConfig& inverter, const std::vector<ConfiguredInverter>& others)

@@ -18,7 +18,7 @@ namespace
 /// Names that the node itself uses beside those of the inverters.
 const std::vector<std::string> RESERVED_NAMES{ "bus", "command", "stop", "bus_status", "dump_trace" };
 
-/// Stations that a Modbus request can address at all.
+/// Stations that a request can address at all: Modbus 1 to 247, CompoWay/F 0 to 99.
 constexpr int LAST_STATION = 247;
 
 /// A velocity that the profile's maximum allows by arithmetic may miss it by rounding.
@@ -117,8 +117,7 @@ void checkProtocol(const Section& entry, const drive::Profile& profile, const Bu
 /// A drive that can be started must be one that can be stopped.
 void checkArming(const Section& entry, const drive::Drive& drive)
 {
-  const bool can_run = drive.sequence("forward") != nullptr || drive.sequence("reverse") != nullptr;
-  if (!can_run || drive.sequence("stop") != nullptr)
+  if (!drive.runsWithoutStop())
   {
     return;
   }
@@ -191,6 +190,19 @@ void readOptions(const Section& entry, InverterConfig& config)
   config.release_on_exit = entry.boolean("release_on_exit", config.release_on_exit);
 }
 
+/// Keys that mean something to one protocol only.
+void checkProtocolKeys(const Section& entry, const drive::Profile& profile)
+{
+  for (const char* key : { "configure_block", "block_read" })
+  {
+    if (profile.protocol == "compoway_f" && entry.has(key))
+    {
+      entry.fail(key, "is a key for Modbus drives, and " + profile.name + " speaks " + profile.protocol,
+                 "no " + std::string(key) + " here");
+    }
+  }
+}
+
 std::uint8_t readNode(const Section& entry, const drive::Profile& profile)
 {
   const auto last = std::min<unsigned>(profile.last_station, LAST_STATION);
@@ -204,7 +216,7 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   config.name = readName(entry);
   // Before the profile is read, so that nonsense is named as such; its own range comes with the profile.
   entry.require("node", "a station number");
-  entry.integer("node", 0, 1, LAST_STATION);
+  entry.integer("node", 0, bus.protocol == "compoway_f" ? 0 : 1, LAST_STATION);
   entry.require("drive", "the name of a profile or an absolute path to one");
   config.drive = entry.text("drive", "");
   config.changes = readChanges(entry);
@@ -213,6 +225,7 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   checkProtocol(entry, profile, bus);
   config.node = readNode(entry, profile);
   checkArming(entry, drive);
+  checkProtocolKeys(entry, profile);
   readVelocities(entry, profile, config);
   readTimes(entry, profile, bus, config);
   readOptions(entry, config);

@@ -25,6 +25,7 @@ constexpr int MOST_EMPTY_PICKS = 100;
 constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
 constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
+constexpr double BLIND_RESET_PERIOD_S = 0.02;
 }  // namespace
 
 Coordinator::Coordinator(const Configuration& configuration, const wire::Line& line)
@@ -252,11 +253,9 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
       }
       return current;
     case Pick::What::Command:
-      return jobs_.count(pick.command) != 0 ? composeJob(pick) : composeVelocity(pick);
+      return jobs_.count(pick.command) != 0 ? composeJob(now, pick) : composeVelocity(now, pick);
     case Pick::What::Refresh:
-      current.purpose = Purpose::Refresh;
-      current.request = inverter.prepared(inverter.drive.read(inverter.config.node, inverter.refresh.next(now)));
-      return current;
+      return composeRefresh(now, pick);
     case Pick::What::Probe:
       return composeProbe(pick);
     case Pick::What::Background:
@@ -265,8 +264,7 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
         const drive::Step& step = inverter.drive.sequence("release")->steps.front();
         released_[pick.inverter] = true;
         current.purpose = Purpose::Release;
-        current.request =
-            inverter.prepared(inverter.drive.write(inverter.config.node, step.point, step.value.value_or(0)));
+        current.request = inverter.prepared(inverter.drive.command(inverter.config.node, step));
         return current;
       }
       current.purpose = Purpose::Setting;
@@ -277,12 +275,46 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
   }
 }
 
-std::optional<Coordinator::Current> Coordinator::composeVelocity(const Pick& pick)
+Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick)
+{
+  Inverter& inverter = *inverters_[pick.inverter];
+  Current current;
+  current.pick = pick;
+  current.inverter = pick.inverter;
+  if (inverter.connectDue(now))
+  {
+    current.purpose = Purpose::Setting;
+    current.request = inverter.prepared(inverter.settings.next());
+    return current;
+  }
+  current.purpose = Purpose::Refresh;
+  const drive::ReadBlock block = inverter.refresh.next(now);
+  current.request = inverter.drive.read(inverter.config.node, block);
+  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force.
+  if (!block.chosen.empty() && inverter.mayRepeatWords(now))
+  {
+    const std::vector<drive::Word> words = inverter.movement.wordsInForce();
+    if (!words.empty())
+    {
+      current.request = inverter.drive.writeAndRead(inverter.config.node, words, block);
+    }
+  }
+  current.request = inverter.prepared(current.request);
+  return current;
+}
+
+std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, const Pick& pick)
 {
   for (const std::size_t member : scheduler_->members(pick.command))
   {
     Inverter& inverter = *inverters_[member];
-    if (const auto write = inverter.movement.next())
+    std::optional<Write> write;
+    if (inverter.refresh.block())
+    {
+      write = inverter.movement.nextCombined(inverter.mayRepeatWords(now) ? inverter.refresh.block() : std::nullopt);
+    }
+    write = write ? write : inverter.movement.next();
+    if (write)
     {
       Current current;
       current.pick = pick;
@@ -297,9 +329,16 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(const Pick& pic
   return std::nullopt;
 }
 
-std::optional<Coordinator::Current> Coordinator::composeJob(const Pick& pick)
+std::optional<Coordinator::Current> Coordinator::composeJob(TimePoint now, const Pick& pick)
 {
   RunningJob& running = jobs_.at(pick.command);
+  const Inverter& inverter = *inverters_[running.inverter];
+  if (running.job->kind() == CommandKind::Reset && !inverter.drive.tellsRun() && inverter.stop.pending())
+  {
+    // Nobody can ask this drive whether RUN is off: the stop must be confirmed first.
+    scheduler_->postpone(pick.command, now + seconds(BLIND_RESET_PERIOD_S));
+    return std::nullopt;
+  }
   Current current;
   current.pick = pick;
   current.purpose = Purpose::Job;

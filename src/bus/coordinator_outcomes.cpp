@@ -57,7 +57,8 @@ void Coordinator::done(const wire::Reply& reply)
     return;
   }
   Inverter& inverter = *inverters_[current.inverter];
-  if (alive(reply) && inverter.answered(reply))
+  inverter.noteExchange(reply.finished_at, false);
+  if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
     log(Level::Ok, inverter.config.name + ": online");
   }
@@ -164,9 +165,18 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   Inverter& inverter = *inverters_[current.inverter];
   const TimePoint now = reply.finished_at;
   const bool cancelled = !scheduler_->velocityWaits(current.inverter);
+  countWear(current);
+  if (!cancelled && dropBlock(current, reply))
+  {
+    return;
+  }
   if (reply.outcome == wire::Outcome::Ok && !cancelled)
   {
     inverter.movement.confirmed(current.write, now);
+    if (current.write.starts)
+    {
+      inverter.settings.commanded();
+    }
     inverter.velocity_tries = 0;
     ++inverter.velocity_frames;
     finishVelocity(current, reply);
@@ -187,9 +197,7 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   }
   if (!cancelled)
   {
-    const bool exception = reply.outcome == wire::Outcome::Exception;
-    inverter.refuseCommand(reply.error_id,
-                           exception ? inverter.drive.exceptionText(reply.error_id) : errorText(reply.error_id));
+    inverter.refuseCommand(reply.error_id, refusalText(inverter, reply.error_id));
     inverter.movement.giveUp();
     if (!inverter.movement.runPossible())
     {
@@ -205,6 +213,30 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   {
     noteLost(now, inverter, reply.error_id);
   }
+}
+
+/// A set-point that reaches the drive's EEPROM wears it, answered or not.
+void Coordinator::countWear(const Current& current)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (inverter.drive.wears(current.write.point) && !inverter.settings.connected())
+  {
+    inverter.noteEepromWrite();
+  }
+}
+
+/// A block write that the drive refuses goes again word by word; returns true if so.
+bool Coordinator::dropBlock(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (reply.outcome != wire::Outcome::Exception || current.write.more.empty())
+  {
+    return false;
+  }
+  inverter.movement.doubtful(current.write);
+  inverter.dropBlock("the drive refuses the block write (" + inverter.drive.exceptionText(reply.error_id) + ")");
+  finishExchange(current, reply, true);
+  return true;
 }
 
 void Coordinator::finishVelocity(const Current& current, const wire::Reply& reply)
@@ -252,11 +284,29 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
     return;
   }
   const Job::Progress progress = alive(reply) ? running.job->done(reply) : running.job->lost(reply);
+  doneStep(reply.finished_at, current);
   finishExchange(current, reply, false);
   advanceJob(reply.finished_at, current.job, progress);
   if (!alive(reply))
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
+/// What follows from the frame of a job, whatever its answer: wear of the EEPROM, and a drive that starts anew.
+void Coordinator::doneStep(TimePoint now, const Current& current)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  const RunningJob& running = jobs_.at(current.job);
+  if (running.job->kind() == CommandKind::WriteParameter && inverter.drive.profile().writes == drive::Writes::Eeprom)
+  {
+    inverter.noteEepromWrite();
+  }
+  if (!current.request.expects_reply)
+  {
+    // It executes without a reply and is deaf for a while: neither a time-out nor an offline drive.
+    inverter.refresh_not_before = now + running.job->pause();
+    inverter.settings.connectAgain();
   }
 }
 
@@ -276,6 +326,12 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
     if (const auto* write = dynamic_cast<const WriteParameterJob*>(running.job.get()))
     {
       inverter.settings.reread(write->parameter().name);
+    }
+    if (dynamic_cast<const ConfigureBlockJob*>(running.job.get()) != nullptr)
+    {
+      const Answer& result = running.job->answer();
+      log(result.success ? Level::Ok : Level::Warn, inverter.config.name + ": " + result.message);
+      inverter.settings.restart();
     }
     endJob(id, Answer(running.job->answer()));
     return;
@@ -298,6 +354,9 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
     finishExchange(current, reply, more);
+    const drive::Monitor& words = more ? inverter.refresh.words() : inverter.refresh.fresh();
+    const bool runs = words.operation.value_or(false) || words.running.value_or(false);
+    inverter.noteExchange(reply.finished_at, reply.outcome == wire::Outcome::Ok && runs);
     if (more)
     {
       actOn(reply.finished_at, inverter, inverter.judgeWords(reply.finished_at));
@@ -360,16 +419,32 @@ void Coordinator::doneSetting(const Current& current, const wire::Reply& reply)
   if (alive(reply))
   {
     inverter.settings_tries = 0;
-    inverter.settings.done(reply);
-    finishExchange(current, reply, false);
+    inverter.settled(reply.finished_at, reply);
+    // Before a status it took the refresh's turn, and gives it back.
+    finishExchange(current, reply, current.pick.what == Pick::What::Refresh);
+    configureBlock(reply.finished_at, inverter);
     return;
   }
+  inverter.settled(reply.finished_at, reply);
   const bool again = repeat(inverter.settings_tries, reply);
   finishExchange(current, reply, false);
   if (!again)
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
   }
+}
+
+void Coordinator::configureBlock(TimePoint now, Inverter& inverter)
+{
+  const auto wanted = inverter.blockToConfigure();
+  if (wanted.empty())
+  {
+    return;
+  }
+  log(Level::Warn, inverter.config.name + ": configure_block: writing " + std::to_string(wanted.size()) +
+                       " parameters to the drive's EEPROM, once");
+  startJob(now, inverter.index, std::make_unique<ConfigureBlockJob>(inverter.drive, inverter.config.node, wanted),
+           bounds().write_parameter, AnswerCallback());
 }
 
 // --- port and second masters -----------------------------------------------------------------------------------------

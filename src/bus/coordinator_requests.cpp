@@ -48,6 +48,12 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
   {
     judged.error_id = ERROR_OFFLINE;
   }
+  else if (!inverter.wrongDrive().empty())
+  {
+    judged.error_id = ERROR_NOT_ARMED;
+    judged.text = inverter.wrongDrive();
+    return judged.error_id;
+  }
   else
   {
     switch (inverter.interlock.judge(now, publisher))
@@ -348,12 +354,31 @@ std::string Coordinator::stopProblem(const Inverter& inverter) const
   {
     return name + ": acknowledged, but RUN is still on";
   }
-  return name + ": " + (error_id >= 0x8000 ? inverter.drive.exceptionText(error_id) : errorText(error_id));
+  return name + ": " + refusalText(inverter, error_id);
+}
+
+/// In the drive's own words where it has answered.
+std::string Coordinator::refusalText(const Inverter& inverter, std::uint16_t error_id) const
+{
+  const std::string text = inverter.drive.exceptionText(error_id);
+  return text.empty() ? errorText(error_id) : text;
+}
+
+/// A brand or model that the profile is not for: what it would do with these requests, nobody knows.
+bool Coordinator::refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback)
+{
+  const std::string why = inverter.offline() ? "" : inverter.wrongDrive();
+  if (!why.empty() && !shutting_down_)
+  {
+    refuseCall(callback, ERROR_NOT_ARMED, why);
+  }
+  return !why.empty() && !shutting_down_;
 }
 
 void Coordinator::stopConfirmed(TimePoint now, Inverter& inverter)
 {
   inverter.movement.stopped(now);
+  inverter.settings.released();
   inverter.interlock.stopConfirmed(now);
   inverter.interlock.resting();
   finishStopCalls(now);
@@ -369,6 +394,10 @@ ServiceBounds Coordinator::bounds() const
   const double inverters = static_cast<double>(inverters_.size());
   bounds.stop = std::max(bounds.stop, 3.0 * exchange * inverters);
   bounds.reset = std::max(bounds.reset, 40.0 * exchange);
+  for (const auto& inverter : inverters_)
+  {
+    bounds.reset = std::max(bounds.reset, 2.0 * inverter->drive.profile().deaf_after_reset + 2.0);
+  }
   bounds.read_faults = std::max(bounds.read_faults, 80.0 * exchange);
   bounds.read_parameter = std::max(bounds.read_parameter, 2.0 * exchange * (inverters + 2.0));
   bounds.write_parameter = std::max(bounds.write_parameter, 20.0 * exchange);
@@ -397,6 +426,10 @@ bool Coordinator::refuseJob(std::size_t index, const AnswerCallback& callback)
   if (shutting_down_)
   {
     refuseCall(callback, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));
+    return true;
+  }
+  if (refuseWrongDrive(inverter, callback))
+  {
     return true;
   }
   if (inverter.offline() || !inverter.known())
@@ -473,16 +506,16 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
   if (!shutting_down_ && inverter.drive.sequence("reset") == nullptr)
   {
     const std::string missing = inverter.drive.missingFor("reset");
-    refuseCall(
-        callback, missing.empty() ? ERROR_NOT_OFFERED : ERROR_NOT_ARMED,
-        missing.empty() ? "this drive has no fault reset" : "fault reset is not armed: confirm '" + missing + "'");
+    refuseCall(callback, missing.empty() ? ERROR_NOT_OFFERED : ERROR_NOT_ARMED,
+               missing.empty() ? "this drive has no fault reset"
+                               : "fault reset is not armed: " + inverter.drive.armingAdvice("reset"));
     return;
   }
   if (refuseJob(index, callback))
   {
     return;
   }
-  if (!inverter.interlock.isFaulted())
+  if (!inverter.interlock.isFaulted() && inverter.drive.reports("faulted"))
   {
     Answer nothing;
     nothing.success = true;
@@ -491,6 +524,10 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
     return;
   }
   inverter.reset_active = true;
+  if (!inverter.drive.tellsRun())
+  {
+    requestStop(now, inverter, StopMode::Decelerate, true, "");
+  }
   startJob(now, index, std::make_unique<ResetJob>(inverter.drive, inverter.config.node), bounds().reset,
            std::move(callback));
 }
@@ -518,11 +555,7 @@ void Coordinator::readParameter(TimePoint now, std::size_t index, const std::str
   const auto parameter = inverter.drive.findParameter(name, false);
   if (!shutting_down_ && !parameter)
   {
-    const std::string missing = inverter.drive.missingForParameter(name);
-    refuseCall(callback, missing.empty() ? ERROR_OUT_OF_RANGE : ERROR_NOT_ARMED,
-               missing.empty() ? "'" + name + "' is no parameter of " + inverter.drive.profile().name +
-                                     "; use the drive's own code, or 0x and the number printed in its manual"
-                               : "parameter '" + name + "' is unconfirmed: confirm '" + missing + "'");
+    refuseParameter(inverter, name, callback);
     return;
   }
   if (refuseJob(index, callback))
@@ -531,6 +564,33 @@ void Coordinator::readParameter(TimePoint now, std::size_t index, const std::str
   }
   startJob(now, index, std::make_unique<ReadParameterJob>(inverter.drive, inverter.config.node, *parameter),
            bounds().read_parameter, std::move(callback));
+}
+
+void Coordinator::refuseParameter(const Inverter& inverter, const std::string& name, const AnswerCallback& callback)
+{
+  const drive::Profile& profile = inverter.drive.profile();
+  const std::string missing = inverter.drive.missingForParameter(name);
+  if (!missing.empty())
+  {
+    const bool unknown = profile.parameters.at(name).item.missing;
+    refuseCall(callback, ERROR_NOT_ARMED,
+               "parameter '" + name +
+                   (unknown ? "': nobody knows its register: give it under overrides (parameters: {" + name +
+                                  ": {register: ...}})"
+                            : "' is unconfirmed: confirm '" + missing + "'"));
+    return;
+  }
+  const bool any = std::any_of(profile.parameters.begin(), profile.parameters.end(),
+                               [](const auto& entry) { return entry.second.item.unconfirmed.empty(); });
+  if (!any)
+  {
+    refuseCall(callback, ERROR_NOT_ARMED,
+               "the profile " + profile.name + " knows no parameter's place: give '" + name + "' under overrides");
+    return;
+  }
+  refuseCall(callback, ERROR_OUT_OF_RANGE,
+             "'" + name + "' is no parameter of " + profile.name +
+                 "; use the drive's own code, or 0x and the number printed in its manual");
 }
 
 /// The reasons that need no drive to refuse a write; 0: none.
@@ -567,21 +627,34 @@ std::uint16_t Coordinator::judgeWrite(const Inverter& inverter, const std::strin
   {
     why = name + " is a setting of the bus itself: it is written with persist only";
   }
-  else if (profile.writes_reach_eeprom && !persist)
+  else if (profile.writes == drive::Writes::Eeprom && !persist)
   {
     why = "on this drive every write reaches the EEPROM: call with persist = true";
   }
-  else if (persist && !profile.writes_reach_eeprom && inverter.drive.sequence("store") == nullptr)
+  else if (persist && profile.writes == drive::Writes::Ram && inverter.drive.sequence("store") == nullptr)
   {
     why = "this drive can't store by a command";
   }
-  else if (!known->second.while_running.value_or(true) &&
-           (inverter.movement.runPossible() || inverter.refresh.fresh().operation.value_or(false)))
+  else if (!(known->second.while_running.value_or(true) && !known->second.setup) && inverter.mayRun())
   {
     why = name + " can't be written while the motor runs";
   }
   if (!why.empty())
   {
+    return ERROR_NOT_OFFERED;
+  }
+  for (const char* sequence : { "open_setup", "close_setup" })
+  {
+    if (known->second.setup && inverter.drive.sequence(sequence) == nullptr)
+    {
+      why = name + " is taken in the drive's setup area only, and the way there is not armed: " +
+            inverter.drive.armingAdvice(sequence);
+      return ERROR_NOT_ARMED;
+    }
+  }
+  if (persist && profile.writes == drive::Writes::Unknown)
+  {
+    why = "the drive's manual does not say whether a write outlives a power-off: call with persist = false";
     return ERROR_NOT_OFFERED;
   }
   if (!parameter)

@@ -22,17 +22,30 @@ std::string withUnit(double value, const std::string& unit)
 DriveSettings::DriveSettings(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
 {
   const drive::Profile& profile = drive.profile();
+  want(profile.identity, true);
+  for (const drive::Expectation& expectation : profile.identity)
+  {
+    wants_model_ = wants_model_ || !expectation.model.empty();
+  }
+  // A model that nobody judges is still worth showing.
+  wants_model_ = wants_model_ || drive.readAttributes(station).has_value();
   want(profile.reply_delay_parameter);
   want(profile.communication_loss.timeout_parameter);
   want(profile.communication_loss.action_parameter);
-  for (const drive::Expectation& expectation : profile.command_source)
+  want(profile.rated_current_parameter);
+  want(profile.rated_voltage_parameter);
+  if (profile.block)
   {
-    want(expectation.parameter);
+    for (const auto* slots : { &profile.block->write_slots, &profile.block->read_slots })
+    {
+      for (const std::string& slot : *slots)
+      {
+        want(slot);
+      }
+    }
   }
-  for (const drive::Expectation& expectation : profile.self_restart)
-  {
-    want(expectation.parameter);
-  }
+  want(profile.command_source, false);
+  want(profile.self_restart, false);
 }
 
 void DriveSettings::want(const std::string& parameter)
@@ -49,6 +62,20 @@ void DriveSettings::want(const std::string& parameter)
   }
 }
 
+void DriveSettings::want(const std::vector<drive::Expectation>& expectations, bool urgent)
+{
+  for (const drive::Expectation& expectation : expectations)
+  {
+    const std::size_t before = settings_.size();
+    want(expectation.parameter);
+    if (settings_.size() > before)
+    {
+      settings_.back().urgent = urgent;
+      settings_.back().when_commanded = expectation.when_commanded;
+    }
+  }
+}
+
 const DriveSettings::Setting* DriveSettings::find(const std::string& parameter) const
 {
   const auto found = std::find_if(settings_.begin(), settings_.end(),
@@ -56,12 +83,40 @@ const DriveSettings::Setting* DriveSettings::find(const std::string& parameter) 
   return found == settings_.end() ? nullptr : &*found;
 }
 
+const DriveSettings::Setting* DriveSettings::known(const std::string& parameter) const
+{
+  const Setting* setting = find(parameter);
+  return setting != nullptr && setting->state == State::Known ? setting : nullptr;
+}
+
+bool DriveSettings::due(const Setting& setting) const
+{
+  return setting.state == State::Unread && (!setting.when_commanded || commanded_);
+}
+
+const DriveSettings::Setting* DriveSettings::unread() const
+{
+  const auto found =
+      std::find_if(settings_.begin(), settings_.end(), [this](const Setting& setting) { return due(setting); });
+  return found == settings_.end() ? nullptr : &*found;
+}
+
 void DriveSettings::restart()
 {
   for (Setting& setting : settings_)
   {
-    setting.state = Setting::State::Unread;
+    setting.state = State::Unread;
   }
+  model_state_ = State::Unread;
+  commanded_ = false;
+  connectAgain();
+}
+
+void DriveSettings::connectAgain()
+{
+  connect_step_ = 0;
+  connect_state_ = State::Unread;
+  connect_error_ = 0;
 }
 
 void DriveSettings::reread(const std::string& parameter)
@@ -70,43 +125,231 @@ void DriveSettings::reread(const std::string& parameter)
   {
     if (setting.parameter.name == parameter)
     {
-      setting.state = Setting::State::Unread;
+      setting.state = State::Unread;
     }
   }
 }
 
+void DriveSettings::commanded()
+{
+  commanded_ = true;
+  for (Setting& setting : settings_)
+  {
+    setting.state = setting.when_commanded ? State::Unread : setting.state;
+  }
+}
+
+void DriveSettings::released()
+{
+  commanded_ = false;
+  for (Setting& setting : settings_)
+  {
+    setting.state = setting.when_commanded ? State::Unread : setting.state;
+  }
+}
+
+bool DriveSettings::modelDue() const
+{
+  return wants_model_ && model_state_ == State::Unread;
+}
+
+bool DriveSettings::connectDue() const
+{
+  // A drive that is another one than expected is told nothing.
+  return connect_state_ == State::Unread && identity() == Identity::Right && drive_.sequence("connect") != nullptr;
+}
+
+bool DriveSettings::urgent() const
+{
+  const bool parameter = std::any_of(settings_.begin(), settings_.end(),
+                                     [this](const Setting& setting) { return setting.urgent && due(setting); });
+  return modelDue() || parameter || connectDue();
+}
+
 bool DriveSettings::pending() const
 {
-  return std::any_of(settings_.begin(), settings_.end(),
-                     [](const Setting& setting) { return setting.state == Setting::State::Unread; });
+  return urgent() || unread() != nullptr;
 }
 
 wire::Request DriveSettings::next() const
 {
-  const auto unread = std::find_if(settings_.begin(), settings_.end(),
-                                   [](const Setting& setting) { return setting.state == Setting::State::Unread; });
-  return drive_.readParameter(station_, unread->parameter);
+  if (modelDue())
+  {
+    return *drive_.readAttributes(station_);
+  }
+  const Setting* setting = unread();
+  // The urgent ones stand first in the list.
+  if (connectDue() && (setting == nullptr || !setting->urgent))
+  {
+    return drive_.command(station_, drive_.sequence("connect")->steps[connect_step_]);
+  }
+  return drive_.readParameter(station_, setting->parameter);
+}
+
+void DriveSettings::doneModel(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Ok)
+  {
+    model_ = drive_.decodeModel(reply.pdu);
+    model_state_ = State::Known;
+  }
+  else if (isLastingRefusal(reply))
+  {
+    model_.clear();
+    model_state_ = State::Refused;
+  }
+}
+
+void DriveSettings::doneConnect(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Exception)
+  {
+    connect_error_ = reply.error_id;
+    connect_state_ = State::Refused;
+  }
+  else if (reply.outcome == wire::Outcome::Ok && ++connect_step_ >= drive_.sequence("connect")->steps.size())
+  {
+    connect_state_ = State::Known;
+  }
 }
 
 void DriveSettings::done(const wire::Reply& reply)
 {
-  const auto unread = std::find_if(settings_.begin(), settings_.end(),
-                                   [](const Setting& setting) { return setting.state == Setting::State::Unread; });
-  if (unread == settings_.end())
+  if (modelDue())
+  {
+    doneModel(reply);
+    return;
+  }
+  const Setting* asked = unread();
+  if (connectDue() && (asked == nullptr || !asked->urgent))
+  {
+    doneConnect(reply);
+    return;
+  }
+  if (asked == nullptr)
   {
     return;
   }
+  Setting& setting = settings_[static_cast<std::size_t>(asked - settings_.data())];
   if (reply.outcome == wire::Outcome::Ok)
   {
-    unread->raw = drive_.rawParameter(unread->parameter, reply.pdu);
-    unread->value = drive_.decodeParameter(unread->parameter, reply.pdu);
-    unread->state = Setting::State::Known;
+    setting.raw = drive_.rawParameter(setting.parameter, reply.pdu);
+    setting.value = drive_.decodeParameter(setting.parameter, reply.pdu);
+    setting.state = State::Known;
   }
-  else if (reply.outcome == wire::Outcome::Exception)
+  else if (reply.outcome == wire::Outcome::Exception && (!setting.urgent || isLastingRefusal(reply)))
   {
-    unread->state = Setting::State::Refused;
+    setting.state = State::Refused;
   }
 }
+
+// --- what it is ------------------------------------------------------------------------------------------------------
+
+Identity DriveSettings::identity() const
+{
+  bool unknown = false;
+  for (const drive::Expectation& expectation : drive_.profile().identity)
+  {
+    if (!expectation.model.empty())
+    {
+      unknown = unknown || model_state_ == State::Unread;
+      const bool fits = model_.compare(0, expectation.model.size(), expectation.model) == 0;
+      if (model_state_ == State::Refused || (model_state_ == State::Known && !fits))
+      {
+        return Identity::Wrong;
+      }
+      continue;
+    }
+    const Setting* setting = find(expectation.parameter);
+    if (setting == nullptr)
+    {
+      continue;
+    }
+    unknown = unknown || setting->state == State::Unread;
+    const bool fits = expectation.accept.count(setting->raw) != 0;
+    if (setting->state == State::Refused || (setting->state == State::Known && !fits))
+    {
+      return Identity::Wrong;
+    }
+  }
+  return unknown ? Identity::Unknown : Identity::Right;
+}
+
+std::string DriveSettings::identityText() const
+{
+  if (identity() == Identity::Unknown)
+  {
+    return "the drive has not told yet what it is";
+  }
+  for (const drive::Expectation& expectation : drive_.profile().identity)
+  {
+    const Setting* setting = find(expectation.parameter);
+    const bool refused = expectation.model.empty() ? setting != nullptr && setting->state == State::Refused
+                                                   : model_state_ == State::Refused;
+    const bool fits = expectation.model.empty() ? setting == nullptr || expectation.accept.count(setting->raw) != 0
+                                                : model_.compare(0, expectation.model.size(), expectation.model) == 0;
+    if (!refused && fits)
+    {
+      continue;
+    }
+    const std::string what = expectation.model.empty() ? expectation.parameter : "its model";
+    const std::string told = expectation.model.empty() && setting != nullptr ? std::to_string(setting->raw) : model_;
+    return "wrong drive: " + what + (refused ? " is not to be had" : " is '" + told + "'") +
+           (expectation.advice.empty() ? "" : "; " + expectation.advice);
+  }
+  return "";
+}
+
+const std::string& DriveSettings::model() const
+{
+  return model_;
+}
+
+bool DriveSettings::connected() const
+{
+  const auto& sequences = drive_.profile().sequences;
+  return sequences.count("connect") == 0 || connect_state_ == State::Known;
+}
+
+drive::Ratings DriveSettings::ratings() const
+{
+  const auto rating = [this](const std::string& parameter) {
+    const Setting* setting = known(parameter);
+    return setting != nullptr && setting->value > 0.0 ? std::optional<double>(setting->value) : std::nullopt;
+  };
+  drive::Ratings ratings;
+  ratings.current = rating(drive_.profile().rated_current_parameter);
+  ratings.voltage = rating(drive_.profile().rated_voltage_parameter);
+  return ratings;
+}
+
+std::optional<std::vector<int>> DriveSettings::codesOf(const std::vector<std::string>& slots) const
+{
+  std::vector<int> codes;
+  for (const std::string& slot : slots)
+  {
+    const Setting* setting = known(slot);
+    if (setting == nullptr)
+    {
+      return std::nullopt;
+    }
+    codes.push_back(static_cast<int>(setting->raw));
+  }
+  return codes;
+}
+
+std::optional<BlockSlots> DriveSettings::blockSlots() const
+{
+  if (!drive_.profile().block)
+  {
+    return std::nullopt;
+  }
+  const auto read = codesOf(drive_.profile().block->read_slots);
+  const auto write = codesOf(drive_.profile().block->write_slots);
+  return read && write ? std::optional<BlockSlots>(BlockSlots{ *read, *write }) : std::nullopt;
+}
+
+// --- what it does by itself ------------------------------------------------------------------------------------------
 
 std::optional<Duration> DriveSettings::driveTimeout() const
 {
@@ -116,7 +359,7 @@ std::optional<Duration> DriveSettings::driveTimeout() const
     return loss.assumed_timeout > 0.0 ? std::optional<Duration>(seconds(loss.assumed_timeout)) : std::nullopt;
   }
   const Setting* setting = find(loss.timeout_parameter);
-  if (setting == nullptr || setting->state != Setting::State::Known || setting->value <= 0.0)
+  if (setting == nullptr || setting->state != State::Known || setting->value <= 0.0)
   {
     return std::nullopt;
   }
@@ -126,7 +369,7 @@ std::optional<Duration> DriveSettings::driveTimeout() const
 Duration DriveSettings::replyDelay() const
 {
   const Setting* setting = find(drive_.profile().reply_delay_parameter);
-  if (setting == nullptr || setting->state != Setting::State::Known)
+  if (setting == nullptr || setting->state != State::Known)
   {
     return seconds(drive_.profile().reply_delay);
   }
@@ -141,7 +384,8 @@ void DriveSettings::expectationFindings(const std::vector<drive::Expectation>& e
   for (const drive::Expectation& expectation : expectations)
   {
     const Setting* setting = find(expectation.parameter);
-    if (setting != nullptr && setting->state == Setting::State::Known && expectation.accept.count(setting->raw) == 0)
+    const bool judged = !expectation.when_commanded || commanded_;
+    if (judged && setting != nullptr && setting->state == State::Known && expectation.accept.count(setting->raw) == 0)
     {
       findings.push_back({ Level::Warn, prefix + ": " + expectation.parameter + " = " +
                                             withUnit(setting->value, setting->parameter.item.unit) + "; " +
@@ -163,9 +407,8 @@ void DriveSettings::lossFindings(std::vector<Finding>& findings) const
   }
   const Setting* timeout = find(loss.timeout_parameter);
   const Setting* action = find(loss.action_parameter);
-  const bool off = timeout != nullptr && timeout->state == Setting::State::Known && timeout->value <= 0.0;
-  const bool ignores =
-      action != nullptr && action->state == Setting::State::Known && loss.runs_on.count(action->raw) != 0;
+  const bool off = timeout != nullptr && timeout->state == State::Known && timeout->value <= 0.0;
+  const bool ignores = action != nullptr && action->state == State::Known && loss.runs_on.count(action->raw) != 0;
   if (!off && !ignores)
   {
     return;
@@ -181,6 +424,15 @@ void DriveSettings::lossFindings(std::vector<Finding>& findings) const
 std::vector<Finding> DriveSettings::findings() const
 {
   std::vector<Finding> findings;
+  if (identity() == Identity::Wrong)
+  {
+    findings.push_back({ Level::Error, identityText() + "; it gets no command but a stop" });
+  }
+  if (connect_state_ == State::Refused)
+  {
+    findings.push_back({ Level::Warn, "the drive refused what it is told at connect: " +
+                                          drive_.exceptionText(connect_error_) + "; check the sequence connect" });
+  }
   expectationFindings(drive_.profile().command_source, "not commanded by the bus", findings);
   lossFindings(findings);
   expectationFindings(drive_.profile().self_restart, "may restart by itself", findings);
@@ -190,14 +442,18 @@ std::vector<Finding> DriveSettings::findings() const
 std::vector<std::pair<std::string, std::string>> DriveSettings::values() const
 {
   std::vector<std::pair<std::string, std::string>> values;
+  if (wants_model_)
+  {
+    values.emplace_back("model as the drive names itself", model_state_ == State::Known ? model_ : "not told");
+  }
   for (const Setting& setting : settings_)
   {
-    std::string text = "not read yet";
-    if (setting.state == Setting::State::Known)
+    std::string text = setting.when_commanded && !commanded_ ? "read while a command is in force" : "not read yet";
+    if (setting.state == State::Known)
     {
       text = withUnit(setting.value, setting.parameter.item.unit);
     }
-    else if (setting.state == Setting::State::Refused)
+    else if (setting.state == State::Refused)
     {
       text = "the drive refuses to tell";
     }

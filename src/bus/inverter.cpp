@@ -21,6 +21,19 @@ constexpr double OPERATION_LOST_S = 0.5;
 constexpr double LOWEST_JUDGED_HZ = 1.0;
 constexpr double MOVEMENT_PATIENCE_S = 3.0;
 constexpr double DEVIATION_PATIENCE_S = 2.0;
+// A drive that was switched off and on is deaf for a second: within half of that it can't have lost our RUN unseen.
+constexpr double RUN_EVIDENCE_S = 0.5;
+constexpr double CONNECT_PAUSE_S = 0.5;
+
+std::string listed(const std::vector<int>& codes)
+{
+  std::string text;
+  for (const int code : codes)
+  {
+    text += (text.empty() ? "" : ", ") + std::to_string(code);
+  }
+  return text;
+}
 
 std::string milliseconds(Duration duration)
 {
@@ -107,6 +120,9 @@ void Inverter::goOffline(std::uint16_t error_id)
   leftover_judged_ = false;
   early_trip_ = false;
   exchange_error_ = error_id;
+  run_shown_at_.reset();
+  block_note_.clear();
+  connect_not_before = TimePoint();
   interlock.offline();
   movement.drop();
   movement.forgetWords();
@@ -137,7 +153,121 @@ wire::Request Inverter::prepared(wire::Request request) const
 {
   request.response_timeout = seconds(config.response_timeout);
   request.reply_delay = settings.replyDelay();
+  request.quiet_before = seconds(drive.profile().quiet_before);
   return request;
+}
+
+// --- what is settled at connect --------------------------------------------------------------------------------------
+
+bool Inverter::connectDue(TimePoint now) const
+{
+  return !offline_ && now >= connect_not_before && settings.urgent();
+}
+
+void Inverter::settled(TimePoint now, const wire::Reply& reply)
+{
+  settings.done(reply);
+  if (reply.outcome != wire::Outcome::Ok)
+  {
+    // Not at once again: the status is worth more.
+    connect_not_before = now + seconds(CONNECT_PAUSE_S);
+  }
+  adoptSettings();
+}
+
+void Inverter::adoptSettings()
+{
+  drive::Ratings ratings = settings.ratings();
+  ratings.current = config.rated_current ? config.rated_current : ratings.current;
+  ratings.voltage = config.rated_voltage ? config.rated_voltage : ratings.voltage;
+  refresh.setRatings(ratings);
+  const auto slots = settings.blockSlots();
+  if (!slots || !block_note_.empty())
+  {
+    return;
+  }
+  refresh.useBlock(blockFits() ? drive.chosenRead(config.block_read) : std::nullopt);
+}
+
+bool Inverter::blockFits() const
+{
+  const auto slots = settings.blockSlots();
+  if (!slots || slots->read != config.block_read)
+  {
+    return false;
+  }
+  const auto& select = drive.profile().block->select;
+  return std::equal(select.begin(), select.end(), slots->write.begin(), slots->write.end(),
+                    [](const auto& wanted, int code) { return static_cast<int>(wanted.second) == code; });
+}
+
+std::vector<std::pair<std::string, std::uint32_t>> Inverter::blockToConfigure()
+{
+  std::vector<std::pair<std::string, std::uint32_t>> wanted;
+  const auto slots = settings.blockSlots();
+  const bool at_rest = known_ && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
+                       !refresh.fresh().running.value_or(true);
+  if (!config.configure_block || block_configured_ || !slots || blockFits() || !at_rest ||
+      settings.identity() != Identity::Right)
+  {
+    return wanted;
+  }
+  // Once: each of these writes wears the EEPROM.
+  block_configured_ = true;
+  const drive::Block& block = *drive.profile().block;
+  for (std::size_t slot = 0; slot < block.write_slots.size(); ++slot)
+  {
+    if (slots->write[slot] != static_cast<int>(block.select[slot].second))
+    {
+      wanted.emplace_back(block.write_slots[slot], block.select[slot].second);
+    }
+  }
+  for (std::size_t slot = 0; slot < block.read_slots.size() && slot < config.block_read.size(); ++slot)
+  {
+    if (slots->read[slot] != config.block_read[slot])
+    {
+      wanted.emplace_back(block.read_slots[slot], static_cast<std::uint32_t>(config.block_read[slot]));
+    }
+  }
+  if (!block.apply_parameter.empty())
+  {
+    wanted.emplace_back(block.apply_parameter, block.apply_value);
+  }
+  return wanted;
+}
+
+void Inverter::dropBlock(const std::string& why)
+{
+  block_note_ = why;
+  refresh.useBlock(std::nullopt);
+}
+
+void Inverter::noteExchange(TimePoint now, bool shows_run)
+{
+  run_shown_at_ = shows_run ? std::optional<TimePoint>(now) : std::nullopt;
+}
+
+bool Inverter::mayRepeatWords(TimePoint now) const
+{
+  return run_shown_at_ && now - *run_shown_at_ < seconds(RUN_EVIDENCE_S) && *run_shown_at_ >= movement.runChangedAt() &&
+         movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
+}
+
+bool Inverter::mayRun() const
+{
+  const drive::Monitor& monitor = refresh.fresh();
+  return movement.runPossible() || monitor.operation.value_or(false) || monitor.running.value_or(false) ||
+         monitor.output_frequency.value_or(0.0) > 0.0;
+}
+
+std::string Inverter::wrongDrive() const
+{
+  return settings.identity() == Identity::Right ? "" : settings.identityText();
+}
+
+void Inverter::noteEepromWrite()
+{
+  ++eeprom_writes_;
 }
 
 bool Inverter::probesByLoopback() const
@@ -189,9 +319,24 @@ Judgement Inverter::judge(TimePoint now)
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
+  judgeRestart(monitor, judgement);
   compareMovement(now, monitor);
-  leftover_judged_ = true;
+  leftover_judged_ = leftover_judged_ || monitor.run_seen || !drive.reports("run_seen");
   return judgement;
+}
+
+/// The drive says that it has forgotten what it was told since its last return.
+void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
+{
+  if (!monitor.restarted.value_or(false) || !settings.connected())
+  {
+    return;
+  }
+  settings.restart();
+  if (movement.runPossible() && !stop.pending())
+  {
+    judgement.stop_reason = "the drive has restarted (switched off and on, or reset)";
+  }
 }
 
 Judgement Inverter::judgeWords(TimePoint now)
@@ -213,6 +358,11 @@ void Inverter::judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgem
 {
   // Words that were asked for before our last change of RUN say nothing about it.
   const bool evidence = sent_at >= movement.runChangedAt();
+  if (!leftover_judged_ && !drive.reports("run_seen") && !stop.pending() && !movement.runPossible())
+  {
+    judgement.stop_reason = "the drive can't tell whether a RUN of the bus is on";
+    return;
+  }
   if (!monitor.run_seen || !evidence || stop.pending())
   {
     return;
@@ -312,6 +462,7 @@ InverterStatus Inverter::status(TimePoint now) const
 {
   InverterStatus status;
   status.index = index;
+  status.model = settings.model();
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
   status.communication_error = offline_;
@@ -409,14 +560,50 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (!drive.profile().unconfirmed.empty())
   {
-    std::string names;
-    for (const std::string& name : drive.profile().unconfirmed)
-    {
-      names += (names.empty() ? "" : ", ") + name;
-    }
-    warn("unconfirmed in the profile: " + names + "; check them on the drive, then list them under confirm");
+    warn("unconfirmed in the profile: " + drive.unconfirmedText());
+  }
+  if (drive.profile().block && settings.blockSlots() && !refresh.block())
+  {
+    warn(blockFinding());
+  }
+  if (writesWear())
+  {
+    warn("every change of the set-point is written to the drive's EEPROM (" + std::to_string(eeprom_writes_) +
+         " writes so far): " + drive.armingAdvice("connect"));
   }
   return findings;
+}
+
+/// The set-point goes to the EEPROM, because the drive could not be told otherwise at connect.
+bool Inverter::writesWear() const
+{
+  return drive.wears("frequency") && !settings.connected() && drive.sequence("forward") != nullptr;
+}
+
+std::string Inverter::blockFinding() const
+{
+  if (!block_note_.empty())
+  {
+    return "block read and write are not used: " + block_note_;
+  }
+  const auto slots = settings.blockSlots();
+  if (blockFits())
+  {
+    return "block read is selected but not in effect: direct reads are used; switch the drive off and on";
+  }
+  return "block read and write are not used, since the drive has selected " + listed(slots->write) + " and " +
+         listed(slots->read) + " instead of " + listed(wantedWriteCodes()) + " and " + listed(config.block_read) +
+         "; direct reads are used; set the drive, or configure_block: true";
+}
+
+std::vector<int> Inverter::wantedWriteCodes() const
+{
+  std::vector<int> codes;
+  for (const auto& entry : drive.profile().block->select)
+  {
+    codes.push_back(static_cast<int>(entry.second));
+  }
+  return codes;
 }
 
 std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now) const
@@ -431,6 +618,18 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
   values.emplace_back("own reply delay", milliseconds(settings.replyDelay()));
+  if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
+  {
+    values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));
+  }
+  if (drive.profile().block)
+  {
+    values.emplace_back("block read", refresh.block() ? "in use: " + listed(config.block_read) : "not used");
+  }
+  for (const auto& value : refresh.chosenValues())
+  {
+    values.push_back(value);
+  }
   for (const auto& value : settings.values())
   {
     values.push_back(value);
@@ -443,8 +642,9 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   InverterView view;
   const drive::Monitor& monitor = refresh.fresh();
   view.offline = offline_;
-  view.at_rest = known_ && !movement.runPossible() && !movement.target() && !monitor.operation.value_or(false) &&
-                 !monitor.running.value_or(false) && !monitor.faulted.value_or(false);
+  view.at_rest = known_ && drive.tellsRun() && !movement.runPossible() && !movement.target() &&
+                 !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
+                 !monitor.faulted.value_or(false);
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();

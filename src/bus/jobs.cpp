@@ -89,8 +89,7 @@ wire::Request ResetJob::next()
     return drive_.read(station_, verifyBlock());
   }
   begun_ = true;
-  const drive::Step& step = drive_.sequence("reset")->steps[step_];
-  return drive_.write(station_, step.point, step.value.value_or(0));
+  return drive_.command(station_, drive_.sequence("reset")->steps[step_]);
 }
 
 Job::Progress ResetJob::done(const wire::Reply& reply)
@@ -138,10 +137,12 @@ Job::Progress ResetJob::done(const wire::Reply& reply)
         answer().error_id = wire::ERROR_TIMEOUT;
         answer().message = "the drive is still tripped after the reset: remove the cause first";
         pause_ = seconds(VERIFY_PERIOD_S);
-        if (++still_tripped_ == VERIFICATIONS_BEFORE_REPEAT)
+        if (++still_tripped_ == VERIFICATIONS_BEFORE_REPEAT && drive_.runBlock() &&
+            drive_.sequence("reset")->steps.front().expects_reply)
         {
+          // Not where each reset makes the drive start anew.
           // A reset coil that an earlier master left on gave no edge the first time.
-          phase_ = drive_.runBlock() ? Phase::CheckRun : Phase::Steps;
+          phase_ = Phase::CheckRun;
           step_ = 0;
         }
         return Progress::GoesOn;
@@ -245,6 +246,7 @@ WriteParameterJob::WriteParameterJob(const drive::Drive& drive, std::uint8_t sta
   , raw_(raw)
   , persist_(persist)
   , ram_changes_(ram_changes)
+  , phase_(parameter.setup ? Phase::Open : Phase::Write)
 {
 }
 
@@ -265,30 +267,39 @@ wire::Request WriteParameterJob::next()
     const auto busy = drive_.readStoreBusy(station_);
     return busy ? *busy : drive_.readParameter(station_, parameter_);
   }
-  const drive::Step& step = drive_.sequence("store")->steps[step_];
-  return drive_.write(station_, step.point, step.value.value_or(0));
+  return drive_.command(station_, stepsOf(phase_)->steps[step_]);
+}
+
+const drive::Sequence* WriteParameterJob::stepsOf(Phase phase) const
+{
+  return drive_.sequence(phase == Phase::Open ? "open_setup" : phase == Phase::Close ? "close_setup" : "store");
 }
 
 Job::Progress WriteParameterJob::done(const wire::Reply& reply)
 {
+  if (reply.outcome == wire::Outcome::Exception && phase_ == Phase::Write && parameter_.setup)
+  {
+    // The drive must not stay in its setup area, where it can't run.
+    refused_id_ = reply.error_id;
+    refused_ = "writing " + parameter_.name + ": " + drive_.exceptionText(reply.error_id);
+    phase_ = Phase::Close;
+    return Progress::GoesOn;
+  }
   if (reply.outcome == wire::Outcome::Exception)
   {
-    return refusedByDrive(reply, phase_ == Phase::Write ? "writing " + parameter_.name
-                                                        : parameter_.name + " is written to RAM but not stored");
+    const bool close = phase_ == Phase::Close;
+    return refusedByDrive(reply, phase_ == Phase::Write  ? "writing " + parameter_.name
+                                 : phase_ == Phase::Open ? "entering the setup area"
+                                 : close                 ? "leaving the setup area, where the drive can't run"
+                                                         : parameter_.name + " is written to RAM but not stored");
+  }
+  if (phase_ == Phase::Open || phase_ == Phase::Close)
+  {
+    return afterSetupStep();
   }
   if (phase_ == Phase::Write)
   {
-    if (drive_.profile().writes_reach_eeprom)
-    {
-      return succeed(parameter_.name + " written to the EEPROM");
-    }
-    ram_changes_.insert(parameter_.name);
-    if (!persist_)
-    {
-      return succeed(parameter_.name + " written to RAM; lost at power-off unless it is stored with persist");
-    }
-    phase_ = Phase::Store;
-    return Progress::GoesOn;
+    return afterWrite();
   }
   if (phase_ == Phase::Store)
   {
@@ -300,6 +311,51 @@ Job::Progress WriteParameterJob::done(const wire::Reply& reply)
     return Progress::GoesOn;
   }
   return stored();
+}
+
+std::string WriteParameterJob::kept() const
+{
+  return drive_.profile().writes == drive::Writes::Eeprom
+             ? " written to the EEPROM"
+             : " written; the manual does not say whether it outlives a power-off";
+}
+
+Job::Progress WriteParameterJob::afterWrite()
+{
+  if (parameter_.setup)
+  {
+    phase_ = Phase::Close;
+    step_ = 0;
+    return Progress::GoesOn;
+  }
+  if (drive_.profile().writes != drive::Writes::Ram)
+  {
+    return succeed(parameter_.name + kept());
+  }
+  ram_changes_.insert(parameter_.name);
+  if (!persist_)
+  {
+    return succeed(parameter_.name + " written to RAM; lost at power-off unless it is stored with persist");
+  }
+  phase_ = Phase::Store;
+  return Progress::GoesOn;
+}
+
+Job::Progress WriteParameterJob::afterSetupStep()
+{
+  const auto& steps = stepsOf(phase_)->steps;
+  pause_ = seconds(steps[step_].pause);
+  if (++step_ < steps.size())
+  {
+    return Progress::GoesOn;
+  }
+  step_ = 0;
+  if (phase_ == Phase::Open)
+  {
+    phase_ = Phase::Write;
+    return Progress::GoesOn;
+  }
+  return refused_id_ != 0 ? fail(refused_id_, refused_) : succeed(parameter_.name + kept());
 }
 
 Job::Progress WriteParameterJob::afterStoreStep()
@@ -329,6 +385,43 @@ Job::Progress WriteParameterJob::stored()
   }
   ram_changes_.clear();
   return succeed("stored in the EEPROM with every other RAM change of this drive; made here: " + names);
+}
+
+// --- block read and write --------------------------------------------------------------------------------------------
+
+ConfigureBlockJob::ConfigureBlockJob(const drive::Drive& drive, std::uint8_t station,
+                                     std::vector<std::pair<std::string, std::uint32_t>> wanted)
+  : Job(drive, station, CommandKind::WriteParameter), wanted_(std::move(wanted))
+{
+}
+
+wire::Request ConfigureBlockJob::next()
+{
+  const auto& entry = wanted_[step_];
+  return drive_.writeParameter(station_, *drive_.findParameter(entry.first, true), entry.second);
+}
+
+Job::Progress ConfigureBlockJob::done(const wire::Reply& reply)
+{
+  if (reply.outcome == wire::Outcome::Exception)
+  {
+    return refusedByDrive(reply, "configure_block: writing " + wanted_[step_].first);
+  }
+  if (++step_ < wanted_.size())
+  {
+    return Progress::GoesOn;
+  }
+  return succeed("configure_block: the block read and write are set up");
+}
+
+Job::Progress ConfigureBlockJob::lost(const wire::Reply& reply)
+{
+  if (step_ + 1 == wanted_.size())
+  {
+    // The last write resets the drive's communication: its reply may get lost with that.
+    return succeed("configure_block: the block read and write are set up (the last write was not acknowledged)");
+  }
+  return Job::lost(reply);
 }
 }  // namespace bus
 }  // namespace inverter_bus

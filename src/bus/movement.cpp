@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/bus/movement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -76,14 +77,13 @@ JudgedVelocity Movement::judge(double velocity) const
   const std::string& name = judged.target.reverse ? REVERSE : FORWARD;
   if (drive_.sequence(name) == nullptr)
   {
-    const std::string missing = drive_.missingFor(name);
-    return missing.empty() ? refused(ERROR_NOT_OFFERED, "this drive has no " + name)
-                           : refused(ERROR_NOT_ARMED, name + " is not armed: check '" + missing +
-                                                          "' in the drive's manual, then confirm or override it");
+    return drive_.missingFor(name).empty()
+               ? refused(ERROR_NOT_OFFERED, "this drive has no " + name)
+               : refused(ERROR_NOT_ARMED, name + " is not armed: " + drive_.armingAdvice(name));
   }
   if (drive_.sequence(STOP) == nullptr)
   {
-    return refused(ERROR_NOT_ARMED, "motion is not armed: the stop command is not confirmed");
+    return refused(ERROR_NOT_ARMED, "motion is not armed, since a stop is not: " + drive_.armingAdvice(STOP));
   }
   return judged;
 }
@@ -126,58 +126,120 @@ const std::string& Movement::sequenceName() const
   return target_->reverse ? REVERSE : FORWARD;
 }
 
+/// The words that the target asks for, in the order of sending.
+std::vector<drive::Word> Movement::wantedWords() const
+{
+  std::vector<drive::Word> words;
+  const drive::Sequence* sequence = target_ ? drive_.sequence(sequenceName()) : nullptr;
+  if (sequence != nullptr)
+  {
+    for (const drive::Step& step : sequence->steps)
+    {
+      words.emplace_back(step.point, step.value ? *step.value : target_->counts);
+    }
+  }
+  return words;
+}
+
+bool Movement::isConfirmed(const drive::Word& word) const
+{
+  const auto confirmed = words_.find(word.first);
+  return confirmed != words_.end() && confirmed->second == word.second;
+}
+
+bool Movement::startsWith(const drive::Word& word) const
+{
+  const auto stop_value = stop_values_.find(word.first);
+  return stop_value != stop_values_.end() && stop_value->second != word.second;
+}
+
 std::optional<Write> Movement::next() const
 {
-  if (!target_)
+  for (const drive::Word& word : wantedWords())
   {
-    return std::nullopt;
-  }
-  const drive::Sequence* sequence = drive_.sequence(sequenceName());
-  if (sequence == nullptr)
-  {
-    return std::nullopt;
-  }
-  for (const drive::Step& step : sequence->steps)
-  {
-    Write write;
-    write.point = step.point;
-    write.raw = step.value ? *step.value : target_->counts;
-    const auto word = words_.find(step.point);
-    if (word != words_.end() && word->second == write.raw)
+    if (isConfirmed(word))
     {
       continue;
     }
-    const auto stop_value = stop_values_.find(step.point);
-    write.starts = stop_value != stop_values_.end() && stop_value->second != write.raw;
+    Write write;
+    write.point = word.first;
+    write.raw = word.second;
+    write.starts = startsWith(word);
     write.request = drive_.write(config_.node, write.point, write.raw);
     return write;
   }
   return std::nullopt;
 }
 
-void Movement::sent(const Write& write)
+std::optional<Write> Movement::nextCombined(const std::optional<drive::ReadBlock>& read) const
 {
-  words_.erase(write.point);
-  if (write.starts)
+  const std::vector<drive::Word> words = wantedWords();
+  const bool confirmed =
+      std::all_of(words.begin(), words.end(), [this](const drive::Word& word) { return isConfirmed(word); });
+  if (confirmed || !drive_.fitsBlockWrite(words))
+  {
+    return std::nullopt;
+  }
+  Write write;
+  // The word that starts the motor gives the frame its name.
+  write.point = words.back().first;
+  write.raw = words.back().second;
+  write.more.assign(words.begin(), words.end() - 1);
+  write.starts = std::any_of(words.begin(), words.end(), [this](const drive::Word& word) { return startsWith(word); });
+  write.request = read ? drive_.writeAndRead(config_.node, words, *read) : drive_.writeChosen(config_.node, words);
+  return write;
+}
+
+std::vector<drive::Word> Movement::wordsInForce() const
+{
+  const std::vector<drive::Word> words = wantedWords();
+  const bool all =
+      std::all_of(words.begin(), words.end(), [this](const drive::Word& word) { return isConfirmed(word); });
+  const bool in_force = run_confirmed_ && target_ && !target_->zero && all;
+  return in_force && drive_.fitsBlockWrite(words) ? words : std::vector<drive::Word>();
+}
+
+void Movement::sentWord(const drive::Word& word)
+{
+  words_.erase(word.first);
+  if (startsWith(word))
   {
     run_command_ = true;
     run_possible_ = true;
   }
-  else if (stop_values_.count(write.point) != 0)
+  else if (stop_values_.count(word.first) != 0)
   {
     run_command_ = false;
     run_confirmed_ = false;
   }
 }
 
-void Movement::confirmed(const Write& write, TimePoint now)
+void Movement::sent(const Write& write)
 {
-  words_[write.point] = write.raw;
-  if (stop_values_.count(write.point) != 0)
+  for (const drive::Word& word : write.more)
   {
-    run_confirmed_ = write.starts;
+    sentWord(word);
+  }
+  sentWord({ write.point, write.raw });
+}
+
+void Movement::confirmedWord(const drive::Word& word, TimePoint now)
+{
+  words_[word.first] = word.second;
+  if (stop_values_.count(word.first) != 0)
+  {
+    run_confirmed_ = startsWith(word);
     run_changed_at_ = now;
   }
+}
+
+void Movement::confirmed(const Write& write, TimePoint now)
+{
+  for (const drive::Word& word : write.more)
+  {
+    confirmedWord(word, now);
+  }
+  confirmedWord({ write.point, write.raw }, now);
   if (next())
   {
     return;
@@ -194,6 +256,10 @@ void Movement::confirmed(const Write& write, TimePoint now)
 void Movement::doubtful(const Write& write)
 {
   words_.erase(write.point);
+  for (const drive::Word& word : write.more)
+  {
+    words_.erase(word.first);
+  }
 }
 
 void Movement::giveUp()

@@ -30,6 +30,11 @@ unsigned lastAddress(const drive::Item& item)
 {
   return item.address + item.size - 1U;
 }
+
+bool carries(const drive::ReadBlock& block, const char* field)
+{
+  return std::find(block.fields.begin(), block.fields.end(), field) != block.fields.end();
+}
 }  // namespace
 
 void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
@@ -44,6 +49,7 @@ void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
   take(from.overload_warning, to.overload_warning);
   take(from.pid_deviation, to.pid_deviation);
   take(from.faulted, to.faulted);
+  take(from.restarted, to.restarted);
   take(from.raw_status, to.raw_status);
   take(from.fault_code, to.fault_code);
   take(from.warning_code, to.warning_code);
@@ -83,25 +89,8 @@ std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive:
   {
     return { block };
   }
-  std::vector<drive::ReadBlock> halves(2);
-  for (std::size_t index = 0; index < fields.size(); ++index)
-  {
-    halves[index < cut ? 0 : 1].fields.push_back(fields[index]);
-  }
-  for (drive::ReadBlock& half : halves)
-  {
-    const drive::Item& first = items.at(half.fields.front());
-    unsigned last = 0;
-    for (const std::string& field : half.fields)
-    {
-      last = std::max(last, lastAddress(items.at(field)));
-    }
-    half.space = block.space;
-    half.number = first.number;
-    half.address = first.address;
-    half.count = last - first.address + 1;
-  }
-  return halves;
+  const auto middle = fields.begin() + static_cast<std::ptrdiff_t>(cut);
+  return { drive.blockOf({ fields.begin(), middle }), drive.blockOf({ middle, fields.end() }) };
 }
 
 Refresh::Refresh(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
@@ -122,10 +111,57 @@ void Refresh::buildBlocks()
       blocks_.push_back(block);
     }
   };
-  add(drive_.slowBlocks(), Class::Slow);
+  add(block_ ? drive_.slowBlocksBeside(*block_) : drive_.slowBlocks(), Class::Slow);
   add(drive_.faultBlocks(), Class::Fault);
   // Last, so that the stamp belongs to the values that matter.
-  add(drive_.fastBlocks(), Class::Fast);
+  add(block_ ? drive_.fastBlocksBeside(*block_) : drive_.fastBlocks(), Class::Fast);
+  if (block_)
+  {
+    add({ *block_ }, Class::Fast);
+  }
+}
+
+void Refresh::setRatings(const drive::Ratings& ratings)
+{
+  ratings_ = ratings;
+}
+
+void Refresh::useBlock(const std::optional<drive::ReadBlock>& block)
+{
+  const bool same = block.has_value() == block_.has_value() && (!block || block->chosen == block_->chosen);
+  if (same)
+  {
+    return;
+  }
+  failed();
+  block_ = block;
+  chosen_values_.clear();
+  buildBlocks();
+}
+
+const std::optional<drive::ReadBlock>& Refresh::block() const
+{
+  return block_;
+}
+
+const std::vector<std::pair<std::string, std::string>>& Refresh::chosenValues() const
+{
+  return chosen_values_;
+}
+
+/// Back to direct reads; the refresh under way starts again.
+bool Refresh::dropBlock()
+{
+  useBlock(std::nullopt);
+  return true;
+}
+
+/// Slots that were changed but don't count yet bring zeros: no status word of a live drive is 0 together with all others.
+bool Refresh::nothingChosen(const wire::Reply& reply) const
+{
+  constexpr std::size_t HEADER = 2;
+  return reply.pdu.size() > HEADER &&
+         std::all_of(reply.pdu.begin() + HEADER, reply.pdu.end(), [](std::uint8_t byte) { return byte == 0; });
 }
 
 void Refresh::plan(TimePoint now)
@@ -136,20 +172,7 @@ void Refresh::plan(TimePoint now)
   scratch_ = drive::Monitor();
   scratch_sent_at_ = TimePoint::max();
   scratch_stamp_ = TimePoint();
-  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
-  bool slow_planned = false;
-  for (std::size_t step = 0; step < blocks_.size() && has_stamp_; ++step)
-  {
-    const std::size_t index = (slow_cursor_ + step) % blocks_.size();
-    Block& block = blocks_[index];
-    const bool due = !block.ever || now - block.last >= due_age;
-    if (block.kind == Class::Slow && !slow_planned && due && now >= block.left_out_until)
-    {
-      plan_.push_back(index);
-      slow_planned = true;
-      slow_cursor_ = index + 1;
-    }
-  }
+  planSlow(now);
   for (std::size_t index = 0; index < blocks_.size(); ++index)
   {
     const Block& block = blocks_[index];
@@ -162,6 +185,33 @@ void Refresh::plan(TimePoint now)
   {
     // Everything is refused: keep asking for something, so that the inverter's return to health is seen.
     plan_.push_back(blocks_.size() - 1);
+  }
+}
+
+/// At most one slow read that is due; in the first refresh after a return those that tell of a leftover RUN.
+void Refresh::planSlow(TimePoint now)
+{
+  const auto tells_run = [&](const Block& block) {
+    return !run_heard_ && block.kind == Class::Slow && carries(block.read, "run_seen") && now >= block.left_out_until;
+  };
+  const bool run_first = std::any_of(blocks_.begin(), blocks_.end(), tells_run);
+  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
+  bool planned = false;
+  for (std::size_t step = 0; step < blocks_.size(); ++step)
+  {
+    const std::size_t index = (slow_cursor_ + step) % blocks_.size();
+    Block& block = blocks_[index];
+    if (block.kind != Class::Slow || now < block.left_out_until)
+    {
+      continue;
+    }
+    const bool due = !block.ever || now - block.last >= due_age;
+    if (run_first ? tells_run(block) : has_stamp_ && !planned && due)
+    {
+      plan_.push_back(index);
+      planned = true;
+      slow_cursor_ = index + 1;
+    }
   }
 }
 
@@ -211,6 +261,7 @@ bool Refresh::advance()
   }
   plan_.clear();
   position_ = 0;
+  run_heard_ = run_heard_ || scratch_.run_seen.has_value() || !drive_.reports("run_seen");
   fresh_ = scratch_;
   fresh_sent_at_ = scratch_sent_at_;
   // Only now: a stamp belongs to a whole status, not to half of a new one beside half of an old one.
@@ -223,24 +274,40 @@ bool Refresh::advance()
 bool Refresh::received(const wire::Reply& reply)
 {
   Block& block = blocks_[plan_[position_]];
+  if (!block.read.chosen.empty())
+  {
+    if (nothingChosen(reply))
+    {
+      return dropBlock();
+    }
+    chosen_values_ = drive_.chosenValues(block.read, reply.pdu, ratings_);
+  }
   block.values = drive::Monitor();
-  drive_.decode(block.read, reply.pdu, block.values);
+  drive_.decode(block.read, reply.pdu, block.values, ratings_);
   block.last = reply.finished_at;
   block.ever = true;
+  takeRunWords(block, reply);
+  if (block.kind == Class::Fast)
+  {
+    scratch_stamp_ = reply.finished_at;
+  }
+  return advance();
+}
+
+/// What decides over safety counts in the refresh that brought it, whether it is read in every one or not.
+void Refresh::takeRunWords(const Block& block, const wire::Reply& reply)
+{
   if (block.kind != Class::Slow)
   {
     mergeMonitor(block.values, scratch_);
   }
-  if (block.kind == Class::Fast)
+  take(block.values.run_seen, scratch_.run_seen);
+  take(block.values.restarted, scratch_.restarted);
+  const bool fast = block.kind == Class::Fast && (block.values.operation || block.values.running);
+  if (block.values.run_seen || fast)
   {
-    const bool carries_run = block.values.run_seen || block.values.operation || block.values.running;
-    if (carries_run)
-    {
-      scratch_sent_at_ = std::min(scratch_sent_at_, reply.sent_at);
-    }
-    scratch_stamp_ = reply.finished_at;
+    scratch_sent_at_ = std::min(scratch_sent_at_, reply.sent_at);
   }
-  return advance();
 }
 
 bool Refresh::refused(const wire::Reply& reply)
@@ -251,6 +318,16 @@ bool Refresh::refused(const wire::Reply& reply)
     return postpone();
   }
   const std::size_t index = plan_[position_];
+  if (!blocks_[index].read.chosen.empty())
+  {
+    return dropBlock();
+  }
+  if (blocks_[index].read.fields.empty())
+  {
+    // A keep-alive that is refused was heard all the same.
+    scratch_stamp_ = reply.finished_at;
+    return advance();
+  }
   const std::vector<drive::ReadBlock> halves = splitBlock(drive_, blocks_[index].read);
   if (halves.size() < 2)
   {
@@ -347,6 +424,9 @@ void Refresh::forget()
   failed();
   fresh_ = drive::Monitor();
   complete_ = false;
+  run_heard_ = false;
+  block_.reset();
+  chosen_values_.clear();
   // Reads that were split or left out are tried in full again.
   buildBlocks();
 }

@@ -65,8 +65,7 @@ wire::Request StopJob::next() const
   {
     return drive_.read(station_, *drive_.runBlock());
   }
-  const drive::Step& step = sequence()->steps[step_];
-  return drive_.write(station_, step.point, step.value.value_or(0));
+  return drive_.command(station_, sequence()->steps[step_]);
 }
 
 std::optional<Duration> StopJob::sent(TimePoint now)

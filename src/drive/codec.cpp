@@ -2,8 +2,10 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "codec.h"
 
+#include <algorithm>
 #include <cstddef>
 
+#include "compoway_codec.h"
 #include "numbers.h"
 
 namespace inverter_bus
@@ -20,10 +22,38 @@ void append(wire::Bytes& bytes, std::uint32_t word)
   bytes.push_back(static_cast<std::uint8_t>(word & 0xFF));
 }
 
+bool isModbus(Space space)
+{
+  return space == Space::Coil || space == Space::Register;
+}
+
 bool isReplyTo(Space space, const wire::Bytes& reply)
 {
-  const std::uint8_t function = space == Space::Coil ? READ_COILS : READ_REGISTERS;
-  return reply.size() >= HEADER && reply[0] == function && reply.size() >= HEADER + reply[1];
+  if (reply.size() < HEADER || reply.size() < HEADER + reply[1])
+  {
+    return false;
+  }
+  return space == Space::Coil ? reply[0] == READ_COILS : reply[0] == READ_REGISTERS || reply[0] == READ_WRITE_REGISTERS;
+}
+
+/// Which word of the reply holds the item.
+std::optional<std::size_t> indexIn(const ReadBlock& block, const Item& item, const Profile& profile)
+{
+  if (!block.chosen.empty())
+  {
+    const auto found = std::find(block.chosen.begin(), block.chosen.end(), item.number);
+    if (found == block.chosen.end() || item.size != 1)
+    {
+      return std::nullopt;
+    }
+    return static_cast<std::size_t>(found - block.chosen.begin());
+  }
+  if (item.space != block.space || item.area != block.area || item.number < block.number)
+  {
+    return std::nullopt;
+  }
+  return item.space == Space::Register ? profile.position(item.number) - profile.position(block.number)
+                                       : static_cast<std::size_t>(item.number - block.number);
 }
 
 std::optional<std::uint32_t> extractCoils(std::size_t index, unsigned count, const wire::Bytes& reply)
@@ -73,16 +103,59 @@ wire::Bytes encodeCoil(const Item& item, std::uint32_t raw, const Profile& profi
 }
 }  // namespace
 
-wire::Bytes encodeRead(Space space, std::uint16_t address, unsigned count)
+wire::Bytes encodeRead(const ReadBlock& block)
 {
-  wire::Bytes pdu = { space == Space::Coil ? READ_COILS : READ_REGISTERS };
+  if (!isModbus(block.space))
+  {
+    return encodeVariableRead(block);
+  }
+  wire::Bytes pdu = { block.space == Space::Coil ? READ_COILS : READ_REGISTERS };
+  append(pdu, block.address);
+  append(pdu, block.count);
+  return pdu;
+}
+
+ReadBlock blockAround(const Item& item)
+{
+  ReadBlock block;
+  block.space = item.space;
+  block.area = item.area;
+  block.number = item.number;
+  block.address = item.address;
+  block.count = item.size;
+  return block;
+}
+
+wire::Bytes encodeWriteRegisters(std::uint16_t address, const std::vector<std::uint16_t>& words)
+{
+  wire::Bytes pdu = { WRITE_REGISTERS };
   append(pdu, address);
-  append(pdu, count);
+  append(pdu, static_cast<std::uint32_t>(words.size()));
+  pdu.push_back(static_cast<std::uint8_t>(words.size() * 2));
+  for (const std::uint16_t word : words)
+  {
+    append(pdu, word);
+  }
+  return pdu;
+}
+
+wire::Bytes encodeReadWrite(const ReadBlock& block, std::uint16_t write_address,
+                            const std::vector<std::uint16_t>& words)
+{
+  wire::Bytes pdu = { READ_WRITE_REGISTERS };
+  append(pdu, block.address);
+  append(pdu, block.count);
+  const wire::Bytes write = encodeWriteRegisters(write_address, words);
+  pdu.insert(pdu.end(), write.begin() + 1, write.end());
   return pdu;
 }
 
 wire::Bytes encodeWrite(const Item& item, std::uint32_t raw, const Profile& profile)
 {
+  if (!isModbus(item.space))
+  {
+    return encodeVariableWrite(item, raw);
+  }
   if (item.space == Space::Coil)
   {
     return encodeCoil(item, raw, profile);
@@ -94,28 +167,33 @@ wire::Bytes encodeWrite(const Item& item, std::uint32_t raw, const Profile& prof
     append(pdu, raw);
     return pdu;
   }
-  wire::Bytes pdu = { WRITE_REGISTERS };
-  append(pdu, item.address);
-  append(pdu, item.size);
-  pdu.push_back(static_cast<std::uint8_t>(item.size * 2));
-  if (item.size == 2)
-  {
-    append(pdu, raw >> 16);
-  }
-  append(pdu, raw);
-  return pdu;
+  const auto low = static_cast<std::uint16_t>(raw & 0xFFFF);
+  const auto high = static_cast<std::uint16_t>(raw >> 16);
+  return encodeWriteRegisters(
+      item.address, item.size == 2 ? std::vector<std::uint16_t>{ high, low } : std::vector<std::uint16_t>{ low });
 }
 
-std::optional<std::uint32_t> extractRaw(const Item& item, std::uint16_t first, const wire::Bytes& reply)
+std::optional<std::uint32_t> extractRaw(const Item& item, const ReadBlock& block, const wire::Bytes& reply,
+                                        const Profile& profile)
 {
-  if (!isReplyTo(item.space, reply) || item.number < first)
+  const auto index = indexIn(block, item, profile);
+  if (!index)
   {
     return std::nullopt;
   }
-  const std::size_t index = static_cast<std::size_t>(item.number - first);
-  const auto raw =
-      item.space == Space::Coil ? extractCoils(index, item.size, reply) : extractRegisters(index, item.size, reply);
-  if (!raw)
+  std::optional<std::uint32_t> raw;
+  if (!isModbus(item.space))
+  {
+    raw = extractElement(item.space, *index, reply);
+  }
+  else if (isReplyTo(item.space, reply))
+  {
+    raw =
+        item.space == Space::Coil ? extractCoils(*index, item.size, reply) : extractRegisters(*index, item.size, reply);
+  }
+  const bool hole = raw && item.space == Space::Register && block.chosen.empty() && block.count > 1 && profile.hole &&
+                    *raw == *profile.hole;
+  if (!raw || hole)
   {
     return std::nullopt;
   }
@@ -127,8 +205,9 @@ double scaled(const Item& item, std::uint32_t raw)
   double counts = raw;
   if (item.is_signed)
   {
-    counts = item.size == 2 ? static_cast<double>(static_cast<std::int32_t>(raw))
-                            : static_cast<double>(static_cast<std::int16_t>(raw & 0xFFFF));
+    const bool wide = item.size == 2 || item.space == Space::Variable;
+    counts = wide ? static_cast<double>(static_cast<std::int32_t>(raw))
+                  : static_cast<double>(static_cast<std::int16_t>(raw & 0xFFFF));
   }
   return scaleCounts(counts, item.resolution);
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "inverter_bus/drive/drive.h"
 
@@ -20,16 +21,28 @@ constexpr std::uint8_t WRITE_REGISTER = 0x06;
 constexpr std::uint8_t DIAGNOSTICS = 0x08;
 constexpr std::uint8_t WRITE_COILS = 0x0F;
 constexpr std::uint8_t WRITE_REGISTERS = 0x10;
+constexpr std::uint8_t READ_WRITE_REGISTERS = 0x17;
 
-/// FC 01 or 03.
-wire::Bytes encodeRead(Space space, std::uint16_t address, unsigned count);
+/// FC 01 or 03; CompoWay/F service 0101 or 0601.
+wire::Bytes encodeRead(const ReadBlock& block);
 
-/// FC 05 or 0F for a coil; FC 06 or 10 for a register: the shorter one that \p profile has.
+/// The read of one item alone.
+ReadBlock blockAround(const Item& item);
+
+/// FC 05 or 0F for a coil; FC 06 or 10 for a register: the shorter one that \p profile has. CompoWay/F: 0102 or 3005.
 wire::Bytes encodeWrite(const Item& item, std::uint32_t raw, const Profile& profile);
 
-/// The raw value of \p item in the reply to a read that began at \p first; empty if the reply is too short, of another
-/// function or doesn't hold the item.
-std::optional<std::uint32_t> extractRaw(const Item& item, std::uint16_t first, const wire::Bytes& reply);
+/// FC 10: \p words from \p address on.
+wire::Bytes encodeWriteRegisters(std::uint16_t address, const std::vector<std::uint16_t>& words);
+
+/// FC 17: writes \p words from \p write_address on and reads what \p block says.
+wire::Bytes encodeReadWrite(const ReadBlock& block, std::uint16_t write_address,
+                            const std::vector<std::uint16_t>& words);
+
+/// The raw value of \p item in the reply to the read of \p block; empty if the reply is too short, of another function,
+/// doesn't hold the item, or says that nothing is there.
+std::optional<std::uint32_t> extractRaw(const Item& item, const ReadBlock& block, const wire::Bytes& reply,
+                                        const Profile& profile);
 
 /// Raw value as a number with sign and unit.
 double scaled(const Item& item, std::uint32_t raw);

@@ -2,9 +2,11 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/drive/drive.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "codec.h"
+#include "compoway_codec.h"
 #include "numbers.h"
 #include "read_plan.h"
 #include "status_fields.h"
@@ -31,12 +33,18 @@ Pace paceOf(const std::string& field, const Profile& profile)
   return profile.slow.count(field) != 0 ? Pace::Slow : Pace::Fast;
 }
 
-std::vector<ReadBlock> planStatus(const Profile& profile, Pace pace)
+bool usable(const Item& item)
+{
+  return item.unconfirmed.empty();
+}
+
+std::vector<ReadBlock> planStatus(const Profile& profile, Pace pace, const std::vector<std::string>& without = {})
 {
   std::map<std::string, Item> items;
   for (const auto& [field, item] : profile.status)
   {
-    if (item.unconfirmed.empty() && paceOf(field, profile) == pace)
+    const bool brought = std::find(without.begin(), without.end(), field) != without.end();
+    if (usable(item) && paceOf(field, profile) == pace && !brought)
     {
       items[field] = item;
     }
@@ -44,12 +52,23 @@ std::vector<ReadBlock> planStatus(const Profile& profile, Pace pace)
   return planReads(items, profile);
 }
 
+/// A drive that tells nothing is still asked for something: it must hear the bus, and the bus must hear it.
+std::vector<ReadBlock> planFast(const Profile& profile)
+{
+  std::vector<ReadBlock> blocks = planStatus(profile, Pace::Fast);
+  if (blocks.empty() && profile.keep_alive)
+  {
+    blocks.push_back(blockAround(*profile.keep_alive));
+  }
+  return blocks;
+}
+
 std::optional<ReadBlock> planRunRead(const Profile& profile)
 {
   for (const char* field : { "run_seen", "running" })
   {
     const auto found = profile.status.find(field);
-    if (found != profile.status.end() && found->second.unconfirmed.empty())
+    if (found != profile.status.end() && usable(found->second))
     {
       return planReads({ { found->first, found->second } }, profile).front();
     }
@@ -62,8 +81,6 @@ wire::Request request(std::uint8_t station, wire::Bytes pdu)
   wire::Request result;
   result.station = station;
   result.pdu = std::move(pdu);
-  result.broadcast = station == 0;
-  result.expects_reply = !result.broadcast;
   return result;
 }
 
@@ -93,17 +110,30 @@ void decodeCode(const std::string& field, std::uint32_t raw, Monitor& monitor)
   }
 }
 
-void decodeField(const std::string& field, const Item& item, std::uint32_t raw, Monitor& monitor)
+/// In SI units; empty where the drive counts in percent of a rating that nobody knows.
+std::optional<double> quantity(const Item& item, std::uint32_t raw, const Ratings& ratings)
+{
+  const double value = scaled(item, raw);
+  if (item.base == Base::None)
+  {
+    return value;
+  }
+  const auto& rating = item.base == Base::RatedCurrent ? ratings.current : ratings.voltage;
+  return rating ? std::optional<double>(value / 100.0 * *rating) : std::nullopt;
+}
+
+void decodeField(const std::string& field, const Item& item, std::uint32_t raw, const Ratings& ratings,
+                 Monitor& monitor)
 {
   const auto flag = flagFields().find(field);
-  const auto quantity = quantityFields().find(field);
+  const auto amount = quantityFields().find(field);
   if (flag != flagFields().end())
   {
     monitor.*(flag->second) = flagValue(item, raw);
   }
-  else if (quantity != quantityFields().end())
+  else if (amount != quantityFields().end())
   {
-    monitor.*(quantity->second) = scaled(item, raw);
+    monitor.*(amount->second) = quantity(item, raw, ratings);
   }
   else if (field == "direction")
   {
@@ -128,6 +158,10 @@ void collectMissing(const std::string& name, const Profile& profile, std::set<st
   }
   for (const Step& step : found->second.steps)
   {
+    if (!step.unconfirmed.empty())
+    {
+      missing.insert(step.unconfirmed);
+    }
     const auto point = profile.points.find(step.point);
     if (point != profile.points.end() && !point->second.item.unconfirmed.empty())
     {
@@ -139,7 +173,7 @@ void collectMissing(const std::string& name, const Profile& profile, std::set<st
 
 Drive::Drive(Profile profile)
   : profile_(std::move(profile))
-  , fast_blocks_(planStatus(profile_, Pace::Fast))
+  , fast_blocks_(planFast(profile_))
   , slow_blocks_(planStatus(profile_, Pace::Slow))
   , fault_blocks_(planStatus(profile_, Pace::Faulted))
   , run_block_(planRunRead(profile_))
@@ -173,10 +207,10 @@ const std::optional<ReadBlock>& Drive::runBlock() const
 
 wire::Request Drive::read(std::uint8_t station, const ReadBlock& block) const
 {
-  return request(station, encodeRead(block.space, block.address, block.count));
+  return request(station, encodeRead(block));
 }
 
-void Drive::decode(const ReadBlock& block, const wire::Bytes& reply, Monitor& monitor) const
+void Drive::decode(const ReadBlock& block, const wire::Bytes& reply, Monitor& monitor, const Ratings& ratings) const
 {
   for (const std::string& field : block.fields)
   {
@@ -185,11 +219,38 @@ void Drive::decode(const ReadBlock& block, const wire::Bytes& reply, Monitor& mo
     {
       continue;
     }
-    if (const auto raw = extractRaw(item->second, block.number, reply))
+    if (const auto raw = extractRaw(item->second, block, reply, profile_))
     {
-      decodeField(field, item->second, *raw, monitor);
+      decodeField(field, item->second, *raw, ratings, monitor);
     }
   }
+}
+
+ReadBlock Drive::blockOf(const std::vector<std::string>& fields) const
+{
+  ReadBlock block = blockAround(profile_.status.at(fields.front()));
+  const auto position = [this](const ReadBlock& around) {
+    return around.space == Space::Register ? profile_.position(around.number) : around.number;
+  };
+  unsigned end = 0;
+  for (const std::string& field : fields)
+  {
+    const ReadBlock around = blockAround(profile_.status.at(field));
+    end = std::max(end, position(around) + around.count);
+    if (position(around) < position(block))
+    {
+      block.number = around.number;
+      block.address = around.address;
+    }
+  }
+  block.count = end - position(block);
+  block.fields = fields;
+  return block;
+}
+
+bool Drive::tellsRun() const
+{
+  return run_block_.has_value();
 }
 
 bool Drive::reports(const std::string& field) const
@@ -221,11 +282,82 @@ std::string Drive::missingFor(const std::string& name) const
   return names;
 }
 
+bool Drive::runsWithoutStop() const
+{
+  const auto armed = [this](const char* name) {
+    std::set<std::string> missing;
+    collectMissing(name, profile_, missing);
+    return profile_.sequences.count(name) != 0 && missing.empty();
+  };
+  return (armed("forward") || armed("reverse")) && !armed("stop");
+}
+
+std::string Drive::armingAdvice(const std::string& name) const
+{
+  std::set<std::string> missing;
+  collectMissing(name, profile_, missing);
+  if (name == "forward" || name == "reverse")
+  {
+    collectMissing("stop", profile_, missing);
+  }
+  return adviceFor(missing);
+}
+
+std::string Drive::unconfirmedText() const
+{
+  std::string names;
+  for (const std::string& mark : profile_.unconfirmed)
+  {
+    names += (names.empty() ? "" : ", ") + mark;
+  }
+  return profile_.unconfirmed.empty() ? "" : names + "; " + adviceFor(profile_.unconfirmed);
+}
+
+/// A value that is known but unproven is confirmed; one that nobody knows is given.
+std::string Drive::adviceFor(const std::set<std::string>& marks) const
+{
+  std::string known;
+  std::string unknown;
+  for (const std::string& mark : marks)
+  {
+    const auto constant = std::find_if(profile_.constants.begin(), profile_.constants.end(), [&](const auto& entry) {
+      return entry.second.unconfirmed == mark && !entry.second.value;
+    });
+    if (constant == profile_.constants.end())
+    {
+      known += (known.empty() ? "'" : ", '") + mark + "'";
+      continue;
+    }
+    unknown += (unknown.empty() ? "'" : ", '") + constant->first + "'";
+    unknown += constant->second.where.empty() ? "" : " (it stands on " + constant->second.where + ")";
+  }
+  std::string advice = known.empty() ? "" : "check " + known + " in the drive's manual or on the drive, then confirm";
+  advice += advice.empty() || unknown.empty() ? "" : "; ";
+  return advice + (unknown.empty() ? "" : "give under overrides " + unknown);
+}
+
+wire::Request Drive::command(std::uint8_t station, const Step& step, std::uint32_t setpoint) const
+{
+  wire::Request result = write(station, step.point, step.value.value_or(setpoint));
+  result.expects_reply = result.expects_reply && step.expects_reply;
+  return result;
+}
+
+bool Drive::wears(const std::string& point) const
+{
+  const auto found = profile_.points.find(point);
+  return found != profile_.points.end() && found->second.wears;
+}
+
 wire::Request Drive::write(std::uint8_t station, const std::string& point, std::uint32_t raw) const
 {
   const auto found = profile_.points.find(point);
-  return request(station,
-                 found == profile_.points.end() ? wire::Bytes() : encodeWrite(found->second.item, raw, profile_));
+  wire::Request result =
+      request(station, found == profile_.points.end() ? wire::Bytes() : encodeWrite(found->second.item, raw, profile_));
+  // CompoWay/F has letters for a broadcast, and a unit 0 like any other.
+  result.broadcast = station == 0 && profile_.protocol != "compoway_f";
+  result.expects_reply = !result.broadcast;
+  return result;
 }
 
 std::uint32_t Drive::frequencyCounts(double frequency_hz) const
@@ -243,6 +375,12 @@ double Drive::frequencyResolution() const
 
 std::optional<wire::Request> Drive::loopback(std::uint8_t station, std::uint16_t number) const
 {
+  if (profile_.protocol == "compoway_f")
+  {
+    return profile_.functions.count(ECHOBACK) == 0
+               ? std::nullopt
+               : std::optional<wire::Request>(request(station, encodeService(ECHOBACK, hexDigits(number, 4))));
+  }
   if (profile_.functions.count(DIAGNOSTICS) == 0)
   {
     return std::nullopt;
@@ -257,8 +395,7 @@ std::optional<wire::Request> Drive::readStoreBusy(std::uint8_t station) const
   {
     return std::nullopt;
   }
-  const Item& item = *profile_.store_busy;
-  return request(station, encodeRead(item.space, item.address, item.size));
+  return request(station, encodeRead(blockAround(*profile_.store_busy)));
 }
 
 bool Drive::decodeStoreBusy(const wire::Bytes& reply) const
@@ -267,7 +404,25 @@ bool Drive::decodeStoreBusy(const wire::Bytes& reply) const
   {
     return false;
   }
-  return extractRaw(*profile_.store_busy, profile_.store_busy->number, reply).value_or(0) != 0;
+  const Item& item = *profile_.store_busy;
+  return extractRaw(item, blockAround(item), reply, profile_).value_or(0) != 0;
+}
+
+std::optional<wire::Request> Drive::readAttributes(std::uint8_t station) const
+{
+  if (profile_.protocol != "compoway_f" || profile_.functions.count(READ_ATTRIBUTES) == 0)
+  {
+    return std::nullopt;
+  }
+  return request(station, encodeService(READ_ATTRIBUTES));
+}
+
+std::string Drive::decodeModel(const wire::Bytes& reply) const
+{
+  constexpr std::size_t MODEL = 10;  // characters, padded with spaces
+  std::string model = responseData(READ_ATTRIBUTES, reply).value_or("").substr(0, MODEL);
+  model.erase(model.find_last_not_of(' ') + 1);
+  return model;
 }
 }  // namespace drive
 }  // namespace inverter_bus

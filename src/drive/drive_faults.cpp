@@ -75,7 +75,7 @@ void Drive::decodeFault(std::size_t index, const ReadBlock& block, const wire::B
   for (const std::string& field : block.fields)
   {
     const auto item = entry.find(field);
-    const auto raw = item == entry.end() ? std::nullopt : extractRaw(item->second, block.number, reply);
+    const auto raw = item == entry.end() ? std::nullopt : extractRaw(item->second, block, reply, profile_);
     if (raw)
     {
       decodeRecordField(field, item->second, *raw, *this, record);
@@ -93,18 +93,67 @@ std::string Drive::faultText(std::uint16_t code) const
   return text != profile_.faults.end() ? text->second : "unknown trip " + std::to_string(code);
 }
 
+namespace
+{
+std::string warningBits(std::uint32_t code, const FaultTable& table)
+{
+  std::string texts;
+  std::uint32_t rest = code;
+  for (const auto& [bits, text] : table)
+  {
+    if ((code & bits) == bits)
+    {
+      texts += (texts.empty() ? "" : ", ") + text;
+      rest &= ~static_cast<std::uint32_t>(bits);
+    }
+  }
+  if (rest != 0)
+  {
+    texts += (texts.empty() ? "" : ", ") + ("warning " + std::to_string(rest));
+  }
+  return texts;
+}
+}  // namespace
+
 std::string Drive::warningText(std::uint32_t code) const
 {
   if (code == 0)
   {
     return "";
   }
+  if (profile_.warning_bits)
+  {
+    return warningBits(code, profile_.warnings);
+  }
   const auto text = code <= 0xFFFF ? profile_.warnings.find(static_cast<std::uint16_t>(code)) : profile_.warnings.end();
   return text != profile_.warnings.end() ? text->second : "warning " + std::to_string(code);
 }
 
+namespace
+{
+/// CompoWay/F: 0x1103 is a response code, 0x0013 an end code.
+std::string compowayText(std::uint16_t error_id, const std::map<unsigned, std::string>& own)
+{
+  constexpr unsigned LAST_END_CODE = 0x00FF;
+  const auto meaning = own.find(error_id);
+  const bool end_code = error_id <= LAST_END_CODE;
+  if (error_id == 0 || (meaning == own.end() && error_id >= 0x0200 && error_id < 0x0300))
+  {
+    return "";  // 0x0205 to 0x0207 are the bus's own
+  }
+  char number[8];
+  std::snprintf(number, sizeof(number), end_code ? "%02X" : "%04X", error_id);
+  return std::string(end_code ? "end code " : "response code ") + number + ": " +
+         (meaning == own.end() ? "unknown to the profile" : meaning->second);
+}
+}  // namespace
+
 std::string Drive::exceptionText(std::uint16_t error_id) const
 {
+  if (profile_.protocol == "compoway_f" && error_id < 0x8000)
+  {
+    return compowayText(error_id, profile_.exceptions);
+  }
   if (error_id < 0x8001 || error_id > 0x9FFF)
   {
     return "";

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <regex>
 
 #include "codec.h"
 #include "inverter_bus/drive/drive.h"
@@ -19,14 +20,48 @@ namespace
 /// A value that lies this close to a whole count is meant to be it (0.1 + 0.2 is not 0.3 in a double).
 constexpr double COUNT_TOLERANCE = 1e-6;
 
-bool isHex(const std::string& name)
+bool isWide(const Item& item)
 {
-  return name.size() > 2 && name[0] == '0' && (name[1] == 'x' || name[1] == 'X');
+  return item.size == 2 || item.space == Space::Variable;
+}
+
+/// "C3/0005": variable type and address as the CompoWay/F manuals write them.
+bool isVariable(const std::string& name)
+{
+  static const std::regex FORM("[0-9A-F]{2}/[0-9A-F]{4}");
+  return std::regex_match(name, FORM);
+}
+
+/// A place in the drive instead of a name of the table.
+bool isPlace(const std::string& name)
+{
+  const bool number = name.size() > 2 && name[0] == '0' && (name[1] == 'x' || name[1] == 'X');
+  return number || isVariable(name);
+}
+
+std::optional<Parameter> rawVariable(const std::string& name)
+{
+  if (!isVariable(name))
+  {
+    return std::nullopt;
+  }
+  Parameter parameter;
+  parameter.name = name;
+  parameter.read_only = true;
+  parameter.item.space = Space::Variable;
+  parameter.item.area = static_cast<std::uint8_t>(std::stoul(name.substr(0, 2), nullptr, 16));
+  parameter.item.number = static_cast<std::uint16_t>(std::stoul(name.substr(3), nullptr, 16));
+  parameter.item.address = parameter.item.number;
+  return parameter;
 }
 
 /// Any register may be read by the number printed in the manual, whether the table knows it or not.
 std::optional<Parameter> rawRegister(const std::string& name, const Profile& profile)
 {
+  if (profile.protocol == "compoway_f")
+  {
+    return rawVariable(name);
+  }
   const auto number = parseInteger(name);
   if (!number || *number > 0xFFFF || *number < profile.first_register)
   {
@@ -48,7 +83,8 @@ std::optional<Parameter> findByNumber(const std::string& name, const Profile& pr
     return raw;
   }
   const auto same_place = [&raw](const auto& entry) {
-    return entry.second.item.number == raw->item.number && entry.second.item.unconfirmed.empty();
+    const Item& item = entry.second.item;
+    return item.number == raw->item.number && item.area == raw->item.area && item.unconfirmed.empty();
   };
   const auto found = std::find_if(profile.parameters.begin(), profile.parameters.end(), same_place);
   return found == profile.parameters.end() ? raw : std::optional<Parameter>(found->second);
@@ -77,7 +113,7 @@ std::string betweenCounts(const Parameter& parameter, double value, double count
 
 std::pair<double, double> countLimits(const Item& item)
 {
-  const double counts = item.size == 2 ? 4294967296.0 : 65536.0;
+  const double counts = isWide(item) ? 4294967296.0 : 65536.0;
   const double lowest = item.is_signed ? -counts / 2.0 : 0.0;
   return { lowest, lowest + counts - 1.0 };
 }
@@ -112,7 +148,7 @@ std::string refusal(const Parameter& parameter, double value, double counts)
 
 std::optional<Parameter> Drive::findParameter(const std::string& name, bool for_write) const
 {
-  if (isHex(name))
+  if (isPlace(name))
   {
     return for_write ? std::nullopt : findByNumber(name, profile_);
   }
@@ -147,7 +183,7 @@ std::string Drive::parameterRefusal(const std::string& name, bool for_write) con
   {
     return "parameter " + name + " is read only";
   }
-  if (isHex(name))
+  if (isPlace(name))
   {
     return for_write ? "register numbers are for reading only: a write needs a name of the profile"
                      : "register " + name + " does not exist";
@@ -159,19 +195,19 @@ wire::Request Drive::readParameter(std::uint8_t station, const Parameter& parame
 {
   wire::Request request;
   request.station = station;
-  request.pdu = encodeRead(parameter.item.space, parameter.item.address, parameter.item.size);
+  request.pdu = encodeRead(blockAround(parameter.item));
   return request;
 }
 
 double Drive::decodeParameter(const Parameter& parameter, const wire::Bytes& reply) const
 {
-  const auto raw = extractRaw(parameter.item, parameter.item.number, reply);
+  const auto raw = extractRaw(parameter.item, blockAround(parameter.item), reply, profile_);
   return raw ? scaled(parameter.item, *raw) : std::numeric_limits<double>::quiet_NaN();
 }
 
 std::uint32_t Drive::rawParameter(const Parameter& parameter, const wire::Bytes& reply) const
 {
-  return extractRaw(parameter.item, parameter.item.number, reply).value_or(0);
+  return extractRaw(parameter.item, blockAround(parameter.item), reply, profile_).value_or(0);
 }
 
 Encoded Drive::encodeParameter(const Parameter& parameter, double value) const
@@ -184,7 +220,7 @@ Encoded Drive::encodeParameter(const Parameter& parameter, double value) const
   {
     // Through 64 bits: a negative count becomes two's complement of the register's size.
     const auto whole = static_cast<std::uint64_t>(std::llround(counts));
-    encoded.raw = static_cast<std::uint32_t>(whole & (parameter.item.size == 2 ? 0xFFFFFFFFULL : 0xFFFFULL));
+    encoded.raw = static_cast<std::uint32_t>(whole & (isWide(parameter.item) ? 0xFFFFFFFFULL : 0xFFFFULL));
   }
   return encoded;
 }

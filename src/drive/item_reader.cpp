@@ -3,6 +3,9 @@
 #include "item_reader.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <regex>
 #include <string>
 
 #include "numbers.h"
@@ -15,22 +18,126 @@ namespace
 {
 constexpr std::int64_t MAX_NUMBER = 0xFFFF;
 
-void readAddress(const YamlCursor& cursor, const Numbering& numbering, Item& item, bool& good)
+bool isUnknown(const YamlCursor& cursor)
 {
-  const auto number = cursor.integer(numbering.lowest(item.space), numbering.highest(item.space));
+  return cursor.value().kind == YamlValue::Kind::Scalar && cursor.value().text == UNKNOWN;
+}
+
+/// A place or value that nobody knows must carry a name, or it would look like one that may be used.
+void noteMissing(const YamlMap& map, Item& item)
+{
+  item.missing = true;
+  if (item.unconfirmed.empty())
+  {
+    map.cursor().complain("is unknown: needs unconfirmed: NAME");
+  }
+}
+
+const Constant* findConstant(const YamlCursor& cursor, const Numbering& numbering)
+{
+  const auto found = numbering.constants.find(cursor.value().text);
+  if (cursor.value().kind == YamlValue::Kind::Scalar && found != numbering.constants.end())
+  {
+    return &found->second;
+  }
+  return nullptr;
+}
+
+/// What hangs on a constant is as unconfirmed as the constant.
+void inheritMark(const Constant& constant, Item& item)
+{
+  if (!constant.unconfirmed.empty())
+  {
+    item.own_mark = item.own_mark.empty() ? item.unconfirmed : item.own_mark;
+    item.unconfirmed = constant.unconfirmed;
+    item.missing = item.missing || !constant.value;
+  }
+}
+
+/// The number that `register` counts from; 0 without `base`.
+std::int64_t readBase(YamlMap& map, const Numbering& numbering, Item& item)
+{
+  const auto cursor = map.find("base");
+  if (!cursor)
+  {
+    return 0;
+  }
+  const Constant* constant = findConstant(*cursor, numbering);
+  if (constant == nullptr)
+  {
+    cursor->reject("a name of the section constants");
+    return 0;
+  }
+  inheritMark(*constant, item);
+  const double base = constant->value.value_or(0.0);
+  if (base != std::floor(base) || base < 0.0 || base > static_cast<double>(MAX_NUMBER))
+  {
+    cursor->complain("the constant is no register number: allowed: an integer from 0 to 65535");
+    return 0;
+  }
+  return static_cast<std::int64_t>(base);
+}
+
+void checkDigits(const YamlCursor& cursor, const Numbering& numbering, std::int64_t number)
+{
+  if (numbering.decimal && ((number & 0xF) > 9 || ((number >> 4) & 0xF) > 9))
+  {
+    cursor.complain(formatHex(static_cast<std::uint32_t>(number)) +
+                    " does not exist on this drive: the last two digits count decimally (numbering.decimal)");
+  }
+}
+
+void readAddress(YamlMap& map, const YamlCursor& cursor, const Numbering& numbering, Item& item, bool& good)
+{
+  const bool based = map.has("base");
+  const std::int64_t base = readBase(map, numbering, item);
+  if (isUnknown(cursor))
+  {
+    noteMissing(map, item);
+    return;
+  }
+  const std::int64_t lowest = based ? 0 : numbering.lowest(item.space);
+  const auto number = cursor.integer(lowest, numbering.highest(item.space) - base);
   if (!number)
   {
     good = false;
     return;
   }
-  item.number = static_cast<std::uint16_t>(*number);
-  item.address = static_cast<std::uint16_t>(*number + numbering.offset(item.space));
+  item.number = static_cast<std::uint16_t>(base + *number);
+  item.address = static_cast<std::uint16_t>(base + *number + numbering.offset(item.space));
+  if (item.space == Space::Register && !item.missing)
+  {
+    checkDigits(cursor, numbering, base + *number);
+  }
+}
+
+/// "C1/0000": variable type and address as the manual writes them.
+void readVariable(const YamlMap& map, const YamlCursor& cursor, Item& item, bool& good)
+{
+  item.space = Space::Variable;
+  if (isUnknown(cursor))
+  {
+    noteMissing(map, item);
+    return;
+  }
+  static const std::regex FORM("([0-9A-F]{2})/([0-9A-F]{4})");
+  std::smatch match;
+  const std::string text = cursor.text().value_or("");
+  if (!std::regex_match(text, match, FORM))
+  {
+    cursor.reject("variable type and address in upper-case hexadecimal digits, as C1/0000");
+    good = false;
+    return;
+  }
+  item.area = static_cast<std::uint8_t>(std::strtoul(match[1].str().c_str(), nullptr, 16));
+  item.number = static_cast<std::uint16_t>(std::strtoul(match[2].str().c_str(), nullptr, 16));
+  item.address = item.number;
 }
 
 void checkEnd(const YamlMap& map, const Numbering& numbering, const Item& item)
 {
   const std::int64_t last = static_cast<std::int64_t>(item.number) + item.size - 1;
-  if (last > numbering.highest(item.space))
+  if (!item.missing && last > numbering.highest(item.space))
   {
     map.cursor().complain("reaches beyond " + formatHex(static_cast<std::uint32_t>(numbering.highest(item.space))));
   }
@@ -53,14 +160,42 @@ void readValues(const YamlCursor& cursor, Item& item)
   }
 }
 
-void readScale(YamlMap& map, Item& item)
+void readResolution(const YamlCursor& cursor, const Numbering& numbering, Item& item)
+{
+  const Constant* constant = findConstant(cursor, numbering);
+  if (constant == nullptr)
+  {
+    item.resolution = cursor.positive().value_or(1.0);
+    return;
+  }
+  inheritMark(*constant, item);
+  item.resolution = constant->value.value_or(1.0);
+  if (!(item.resolution > 0.0))
+  {
+    cursor.complain("the constant is " + formatNumber(item.resolution) + ": allowed: a number above 0");
+    item.resolution = 1.0;
+  }
+}
+
+void readScale(YamlMap& map, const Numbering& numbering, const ItemRules& rules, Item& item)
 {
   if (const auto cursor = map.find("resolution"))
   {
-    item.resolution = cursor->positive().value_or(1.0);
+    readResolution(*cursor, numbering, item);
   }
   item.unit = map.text("unit");
   item.is_signed = map.flag("signed", false);
+  const auto of = rules.base ? map.find("of") : std::nullopt;
+  if (!of)
+  {
+    return;
+  }
+  item.base = of->choice({ "rated_current", "rated_voltage" }).value_or("") == "rated_current" ? Base::RatedCurrent
+                                                                                               : Base::RatedVoltage;
+  if (item.unit != "%")
+  {
+    of->complain("needs the unit %: the resolution is then in percent of the rating");
+  }
 }
 
 void readBits(YamlMap& map, const ItemRules& rules, Item& item)
@@ -74,7 +209,7 @@ void readBits(YamlMap& map, const ItemRules& rules, Item& item)
       item.bit = static_cast<unsigned>(bit);
     }
   }
-  const std::int64_t largest = item.size == 2 ? 0xFFFFFFFFLL : 0xFFFF;
+  const std::int64_t largest = largestRaw(item);
   item.mask = static_cast<std::uint32_t>(map.integer("mask", 1, largest, 0xFFFFFFFFLL));
   if (has_bit && (item.size != 1 || map.has("mask") || map.has("signed") || map.has("resolution") || map.has("values")))
   {
@@ -86,12 +221,15 @@ void readBits(YamlMap& map, const ItemRules& rules, Item& item)
   }
 }
 
-void readRegister(YamlMap& map, const ItemRules& rules, Item& item)
+void readRegister(YamlMap& map, const Numbering& numbering, const ItemRules& rules, Item& item)
 {
-  item.size = static_cast<unsigned>(map.integer("words", 1, 2, 1));
+  if (item.space == Space::Register)
+  {
+    item.size = static_cast<unsigned>(map.integer("words", 1, 2, 1));
+  }
   if (rules.scale)
   {
-    readScale(map, item);
+    readScale(map, numbering, rules, item);
   }
   readBits(map, rules, item);
 }
@@ -129,10 +267,68 @@ std::int64_t Numbering::highest(Space) const
   return MAX_NUMBER;
 }
 
+namespace
+{
+/// The keys that say where an item lies on this protocol.
+std::vector<std::string> placeKeys(const Numbering& numbering, const ItemRules& rules)
+{
+  if (!numbering.variables)
+  {
+    return rules.coil ? std::vector<std::string>{ "coil", "register" } : std::vector<std::string>{ "register" };
+  }
+  // What is written may be an operation code; the controller's status is only read.
+  return rules.written                               ? std::vector<std::string>{ "variable", "operation" }
+         : rules.coil || rules.values || rules.scale ? std::vector<std::string>{ "variable", "controller_status" }
+                                                     : std::vector<std::string>{ "variable" };
+}
+
+/// The one key that says where the item lies; none after a complaint.
+std::string readPlaceKey(YamlMap& map, const std::vector<std::string>& keys)
+{
+  std::string found;
+  std::size_t count = 0;
+  for (const std::string& key : keys)
+  {
+    if (map.find(key))
+    {
+      found = key;
+      ++count;
+    }
+  }
+  if (count == 1)
+  {
+    return found;
+  }
+  map.cursor().complain("needs exactly " +
+                        (keys.size() == 1 ? "the key " + keys[0] : "one of the keys " + keys[0] + " and " + keys[1]));
+  return "";
+}
+
+void readPlace(YamlMap& map, const std::string& key, const Numbering& numbering, Item& item, bool& good)
+{
+  const YamlCursor cursor = *map.find(key);
+  if (key == "variable")
+  {
+    readVariable(map, cursor, item, good);
+    return;
+  }
+  if (key == "operation" || key == "controller_status")
+  {
+    item.space = key == "operation" ? Space::Operation : Space::ControllerStatus;
+    good = cursor.flag().value_or(false);
+    if (!good)
+    {
+      cursor.reject("true");
+    }
+    return;
+  }
+  item.space = key == "coil" ? Space::Coil : Space::Register;
+  readAddress(map, cursor, numbering, item, good);
+}
+}  // namespace
+
 std::optional<Item> readItem(YamlMap& map, const Numbering& numbering, const ItemRules& rules)
 {
-  const auto coil = rules.coil ? map.find("coil") : std::nullopt;
-  const auto reg = map.find("register");
   Item item;
   item.unconfirmed = map.name("unconfirmed");
   map.text("source");
@@ -140,22 +336,20 @@ std::optional<Item> readItem(YamlMap& map, const Numbering& numbering, const Ite
   {
     return std::nullopt;
   }
-  if (static_cast<bool>(coil) == static_cast<bool>(reg))
+  const std::string key = readPlaceKey(map, placeKeys(numbering, rules));
+  if (key.empty())
   {
-    const std::string what = rules.coil ? "one of the keys coil and register" : "the key register";
-    map.cursor().complain("needs exactly " + what);
     return std::nullopt;
   }
   bool good = true;
-  item.space = coil ? Space::Coil : Space::Register;
-  readAddress(coil ? *coil : *reg, numbering, item, good);
-  if (coil)
+  readPlace(map, key, numbering, item, good);
+  if (item.space == Space::Coil)
   {
     readCoil(map, rules, item);
   }
   else
   {
-    readRegister(map, rules, item);
+    readRegister(map, numbering, rules, item);
   }
   if (const auto values = rules.values ? map.find("values") : std::nullopt)
   {
@@ -203,7 +397,7 @@ std::uint32_t largestRaw(const Item& item)
   {
     return item.size >= 32 ? 0xFFFFFFFFU : (1U << item.size) - 1U;
   }
-  return item.size == 2 ? 0xFFFFFFFFU : 0xFFFFU;
+  return item.size == 2 || item.space == Space::Variable ? 0xFFFFFFFFU : 0xFFFFU;
 }
 }  // namespace drive
 }  // namespace inverter_bus

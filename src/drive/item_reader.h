@@ -4,7 +4,9 @@
 #define INVERTER_BUS_SRC_DRIVE_ITEM_READER_H
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,11 +17,17 @@ namespace inverter_bus
 {
 namespace drive
 {
-/// Difference between the wire address and the number printed in the manual.
+/// How the drive counts: difference between the wire address and the number printed in the manual, and the numbers that
+/// have names.
 struct Numbering
 {
   std::int64_t register_offset = 0;
   std::int64_t coil_offset = 0;
+  /// The last two digits of a register's number count decimally.
+  bool decimal = false;
+  /// CompoWay/F: variables instead of coils and registers.
+  bool variables = false;
+  std::map<std::string, Constant> constants;
 
   std::int64_t offset(Space space) const;
   /// Printed numbers whose wire address is 0 to 65535.
@@ -39,7 +47,14 @@ struct ItemRules
   bool values = false;
   /// resolution, unit, signed.
   bool scale = true;
+  /// `of`: percent of a rating.
+  bool base = false;
+  /// A place that is written: an operation code is possible, the controller status isn't.
+  bool written = false;
 };
+
+/// What stands where a value is not known to anybody.
+constexpr const char* UNKNOWN = "unknown";
 
 /// Reads the keys of an item: register or coil and what belongs to it, `unconfirmed` and `source`. Other keys of the
 /// map are left to the caller, who calls YamlMap::finish(). Empty after a mistake in the address.

@@ -27,6 +27,8 @@ void settleUnconfirmed(Profile& profile)
   dropIfUnconfirmed(profile.communication_loss.timeout_parameter, profile);
   dropIfUnconfirmed(profile.communication_loss.action_parameter, profile);
   dropIfUnconfirmed(profile.reply_delay_parameter, profile);
+  dropIfUnconfirmed(profile.rated_current_parameter, profile);
+  dropIfUnconfirmed(profile.rated_voltage_parameter, profile);
   for (const std::string& name : profile.unconfirmed)
   {
     profile.unconfirmed_tables.erase(name);
@@ -38,8 +40,10 @@ Profile buildProfile(const YamlValue& root, Problems& problems)
 {
   Profile profile;
   YamlMap map(YamlCursor(root, "", problems));
-  const Numbering numbering = readNumbering(map);
+  Numbering numbering = readNumbering(map);
   profile.first_register = static_cast<unsigned>(numbering.lowest(Space::Register));
+  profile.decimal_numbers = numbering.decimal;
+  readConstants(map, numbering, profile);
   readIdentity(map, profile);
   readLine(map, profile);
   readLimits(map, numbering, profile);
@@ -48,6 +52,8 @@ Profile buildProfile(const YamlValue& root, Problems& problems)
   readStatus(map, numbering, profile);
   readFaults(map, numbering, profile);
   readParameters(map, numbering, profile);
+  readBlock(map, numbering, profile);
+  readRatings(map, profile);
   readSupervision(map, profile);
   map.finish();
   if (problems.empty())
@@ -55,10 +61,21 @@ Profile buildProfile(const YamlValue& root, Problems& problems)
     // Only on a complete profile: after a mistake these would report what merely follows from it.
     checkReferences(root, profile, problems);
     checkAbilities(root, profile, problems);
+    checkBlock(root, profile, problems);
     checkOverlaps(root, profile, problems);
     settleUnconfirmed(profile);
   }
   return profile;
+}
+
+unsigned Profile::position(std::uint16_t number) const
+{
+  if (!decimal_numbers)
+  {
+    return number;
+  }
+  // E6581913 p68: after FD09 comes FD10.
+  return (number >> 8U) * 100U + ((number >> 4U) & 0xFU) * 10U + (number & 0xFU);
 }
 
 YamlCursor locate(const YamlValue& root, const std::string& path, Problems& problems)

@@ -19,6 +19,8 @@ Profile buildProfile(const YamlValue& root, Problems& problems);
 
 // One function per group of top-level keys; each asks the root map for its own keys.
 Numbering readNumbering(YamlMap& root);
+/// Must come before everything that may name a constant.
+void readConstants(YamlMap& root, Numbering& numbering, Profile& profile);
 void readIdentity(YamlMap& root, Profile& profile);
 void readLine(YamlMap& root, Profile& profile);
 void readLimits(YamlMap& root, const Numbering& numbering, Profile& profile);
@@ -26,12 +28,18 @@ void readTiming(YamlMap& root, Profile& profile);
 void readCommands(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readStatus(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readFaults(YamlMap& root, const Numbering& numbering, Profile& profile);
+void readBlock(YamlMap& root, const Numbering& numbering, Profile& profile);
+void readRatings(YamlMap& root, Profile& profile);
 void readParameters(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readSupervision(YamlMap& root, Profile& profile);
+
+/// Names that operation_codes may have.
+const std::vector<std::string>& operationCodeNames();
 
 /// What only shows when all sections are read: references, functions, limits, overlaps.
 void checkReferences(const YamlValue& root, const Profile& profile, Problems& problems);
 void checkAbilities(const YamlValue& root, const Profile& profile, Problems& problems);
+void checkBlock(const YamlValue& root, const Profile& profile, Problems& problems);
 void checkOverlaps(const YamlValue& root, const Profile& profile, Problems& problems);
 
 /// The value at a way like "points.run" for a complaint; the nearest one above it where it doesn't exist.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "numbers.h"
 #include "profile_builder.h"
@@ -51,7 +52,7 @@ void checkSetpoint(const YamlValue& root, const Profile& profile, Problems& prob
   }
   const Item& item = point->second.item;
   const double counts = toCounts(profile.maximum_frequency, item.resolution);
-  if (item.space == Space::Coil || counts > largestRaw(item) || counts < 1.0)
+  if (item.space == Space::Coil || item.space == Space::Operation || counts > largestRaw(item) || counts < 1.0)
   {
     locate(root, "points.frequency", problems)
         .complain("frequency.maximum " + formatNumber(profile.maximum_frequency) + " Hz is " + formatNumber(counts) +
@@ -94,6 +95,20 @@ void checkExpectations(const YamlValue& root, const std::string& key, const std:
   }
 }
 
+/// A parameter that needs the setup area needs commands that lead into it and out of it again.
+void checkSetupParameters(const YamlValue& root, const Profile& profile, Problems& problems)
+{
+  for (const auto& [name, parameter] : profile.parameters)
+  {
+    const bool both = profile.sequences.count("open_setup") != 0 && profile.sequences.count("close_setup") != 0;
+    if (parameter.setup && !both)
+    {
+      locate(root, "parameters." + name, problems)
+          .complain("setup needs the sequences open_setup and close_setup: must be given");
+    }
+  }
+}
+
 /// Which abilities of the drive an item needs.
 class Abilities
 {
@@ -105,6 +120,11 @@ public:
 
   void needRead(const std::string& key, const Item& item) const
   {
+    if (profile_.protocol == "compoway_f")
+    {
+      need(key, { item.space == Space::ControllerStatus ? 0x0601U : 0x0101U });
+      return;
+    }
     const bool coil = item.space == Space::Coil;
     need(key, { coil ? 0x01U : 0x03U });
     const unsigned limit = coil ? profile_.read_coils : profile_.read_registers;
@@ -117,6 +137,11 @@ public:
 
   void needWrite(const std::string& key, const Item& item) const
   {
+    if (profile_.protocol == "compoway_f")
+    {
+      need(key, { item.space == Space::Operation ? 0x3005U : 0x0102U });
+      return;
+    }
     if (item.space == Space::Coil)
     {
       need(key, { 0x05, 0x0F });
@@ -163,14 +188,16 @@ private:
 
 bool overlap(const Item& a, const Item& b)
 {
-  return a.space == b.space && a.number < b.number + b.size && b.number < a.number + a.size;
+  return !a.missing && !b.missing && a.space == b.space && a.area == b.area && a.number < b.number + b.size &&
+         b.number < a.number + a.size;
 }
 
 bool inCommandArea(const Item& item, const Profile& profile)
 {
   for (const auto& span : profile.command_registers)
   {
-    if (item.number <= span.second && item.number + item.size > span.first)
+    if (!item.missing && item.space == Space::Register && item.number <= span.second &&
+        item.number + item.size > span.first)
     {
       return true;
     }
@@ -206,8 +233,9 @@ void checkParameterOverlaps(const YamlValue& root, const Profile& profile, Probl
           .complain("lies on a command register, which is never writable as a parameter: needs read_only: true");
     }
   }
-  std::sort(sorted.begin(), sorted.end(),
-            [](const Parameter* a, const Parameter* b) { return a->item.number < b->item.number; });
+  std::sort(sorted.begin(), sorted.end(), [](const Parameter* a, const Parameter* b) {
+    return std::tie(a->item.area, a->item.number) < std::tie(b->item.area, b->item.number);
+  });
   for (std::size_t i = 1; i < sorted.size(); ++i)
   {
     if (overlap(sorted[i - 1]->item, sorted[i]->item))
@@ -251,6 +279,11 @@ void checkReferences(const YamlValue& root, const Profile& profile, Problems& pr
   checkExpectations(root, "identity", profile.identity, profile, problems);
   checkExpectations(root, "command_source", profile.command_source, profile, problems);
   checkExpectations(root, "self_restart", profile.self_restart, profile, problems);
+  checkParameterName(root, "ratings.current", profile.rated_current_parameter, profile, problems);
+  checkParameterName(root, "ratings.voltage", profile.rated_voltage_parameter, profile, problems);
+  checkUnit(root, "ratings.current", profile.rated_current_parameter, { "A" }, profile, problems);
+  checkUnit(root, "ratings.voltage", profile.rated_voltage_parameter, { "V" }, profile, problems);
+  checkSetupParameters(root, profile, problems);
   const CommunicationLoss& loss = profile.communication_loss;
   checkParameterName(root, "communication_loss.timeout_parameter", loss.timeout_parameter, profile, problems);
   checkParameterName(root, "communication_loss.action_parameter", loss.action_parameter, profile, problems);
@@ -288,6 +321,52 @@ void checkAbilities(const YamlValue& root, const Profile& profile, Problems& pro
   if (profile.store_busy)
   {
     abilities.needRead("store_busy", *profile.store_busy);
+  }
+  const bool asks = std::any_of(profile.status.begin(), profile.status.end(), [&profile](const auto& entry) {
+    const bool fast = profile.slow.count(entry.first) == 0 && profile.when_faulted.count(entry.first) == 0;
+    return fast && entry.second.unconfirmed.empty();
+  });
+  if (profile.keep_alive)
+  {
+    abilities.needRead("keep_alive", *profile.keep_alive);
+  }
+  else if (!asks)
+  {
+    locate(root, "status", problems)
+        .complain("has no confirmed field that is read in every refresh: needs one, or keep_alive");
+  }
+}
+
+void checkBlock(const YamlValue& root, const Profile& profile, Problems& problems)
+{
+  if (!profile.block)
+  {
+    return;
+  }
+  const Block& block = *profile.block;
+  for (const std::string& name : block.read_slots)
+  {
+    checkParameterName(root, "block.read.slots", name, profile, problems);
+  }
+  for (const std::string& name : block.write_slots)
+  {
+    checkParameterName(root, "block.write.slots", name, profile, problems);
+  }
+  checkParameterName(root, "block.apply.parameter", block.apply_parameter, profile, problems);
+  for (const auto& entry : block.select)
+  {
+    if (profile.points.count(entry.first) == 0)
+    {
+      locate(root, "block.write.select", problems)
+          .complain("names the unknown point '" + entry.first + "': allowed: a name of the section points");
+    }
+  }
+  for (const unsigned function : { 0x03U, 0x10U, 0x17U })
+  {
+    if (profile.functions.count(function) == 0)
+    {
+      locate(root, "block", problems).complain("needs function " + formatHex(function) + ": limits.functions lacks it");
+    }
   }
 }
 

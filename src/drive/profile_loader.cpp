@@ -45,7 +45,7 @@ void applyOverrides(YamlValue& root, const ProfileChanges& changes, Problems& pr
     return;
   }
   const std::string place = changes.place.empty() ? "overrides" : changes.place;
-  const auto overrides = parseYaml(changes.overrides_yaml, place, false, problems);
+  auto overrides = parseYaml(changes.overrides_yaml, place, false, problems);
   if (!overrides || overrides->kind == YamlValue::Kind::Empty)
   {
     return;
@@ -55,7 +55,22 @@ void applyOverrides(YamlValue& root, const ProfileChanges& changes, Problems& pr
     problems.add(place, "overrides", "allowed: a map of profile keys");
     return;
   }
+  nameConstants(root, *overrides);
   mergeOverrides(root, *overrides);
+}
+
+/// A constant may be confirmed by its own name, whatever its mark is called.
+std::vector<std::string> markNames(const std::vector<std::string>& names, const std::set<std::string>& known,
+                                   const std::map<std::string, std::string>& constants)
+{
+  std::vector<std::string> marks;
+  for (const std::string& name : names)
+  {
+    const auto constant = constants.find(name);
+    const bool alias = known.count(name) == 0 && constant != constants.end();
+    marks.push_back(alias ? constant->second : name);
+  }
+  return marks;
 }
 
 Profile readProfile(const std::string& path, const ProfileChanges& changes, Problems& problems)
@@ -67,8 +82,10 @@ Profile readProfile(const std::string& path, const ProfileChanges& changes, Prob
     return Profile();
   }
   const std::set<std::string> known = unconfirmedNames(*root);
+  const std::map<std::string, std::string> constants = constantMarks(*root);
   applyOverrides(*root, changes, problems);
-  confirm(*root, changes.confirm, known, changes.place.empty() ? path : changes.place, problems);
+  confirm(*root, markNames(changes.confirm, known, constants), known, changes.place.empty() ? path : changes.place,
+          problems);
   Profile profile = buildProfile(*root, problems);
   profile.file = path;
   return profile;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "item_reader.h"
 #include "yaml_reader.h"
 
 namespace inverter_bus
@@ -18,16 +19,22 @@ const std::string RANGE_MARK = "range_unconfirmed";
 /// Keys that `unconfirmed` is about. A title or `slow` says nothing about whether the address is right.
 bool confirms(const YamlEntry& entry)
 {
-  static const std::set<std::string> KEYS = { "register", "coil", "count",  "words",  "signed", "resolution",
-                                              "bit",      "mask", "values", "offset", "steps",  "text" };
+  static const std::set<std::string> KEYS = {
+    "register", "coil",  "count", "words", "signed", "resolution", "bit",      "mask",      "values",
+    "offset",   "steps", "text",  "value", "base",   "of",         "variable", "operation", "controller_status"
+  };
   return KEYS.count(entry.key) != 0;
 }
 
 /// {coil: 5} over {register: 7, words: 2}: another place, so nothing of the old one is left.
 bool changesSpace(const YamlValue& base, const YamlValue& change)
 {
-  return (base.find("register") != nullptr && change.find("coil") != nullptr) ||
-         (base.find("coil") != nullptr && change.find("register") != nullptr);
+  static const std::vector<std::string> PLACES = { "register", "coil", "variable", "operation", "controller_status" };
+  const auto in = [](const YamlValue& map) {
+    return std::find_if(PLACES.begin(), PLACES.end(),
+                        [&map](const std::string& key) { return map.find(key) != nullptr; });
+  };
+  return in(base) != PLACES.end() && in(change) != PLACES.end() && in(base) != in(change);
 }
 
 void removeMarks(YamlValue& base, const YamlValue& change)
@@ -63,10 +70,21 @@ void collect(const YamlValue& value, std::set<std::string>& names)
   }
 }
 
+/// {value: unknown}, {register: unknown}: nothing is there that could be confirmed.
+bool isUnknown(const YamlValue& map)
+{
+  return std::any_of(map.entries.begin(), map.entries.end(), [](const YamlEntry& entry) {
+    const bool place =
+        entry.key == "value" || entry.key == "register" || entry.key == "coil" || entry.key == "variable";
+    return place && entry.value.kind == YamlValue::Kind::Scalar && !entry.value.quoted && entry.value.text == UNKNOWN;
+  });
+}
+
 void removeNames(YamlValue& value, const std::set<std::string>& names)
 {
-  const auto confirmed = [&names](const YamlEntry& entry) {
-    return isMark(entry) && names.count(entry.value.text) != 0;
+  const bool unknown = isUnknown(value);
+  const auto confirmed = [&names, unknown](const YamlEntry& entry) {
+    return isMark(entry) && !unknown && names.count(entry.value.text) != 0;
   };
   value.entries.erase(std::remove_if(value.entries.begin(), value.entries.end(), confirmed), value.entries.end());
   for (YamlEntry& entry : value.entries)
@@ -87,8 +105,70 @@ std::set<std::string> unconfirmedNames(const YamlValue& root)
   return names;
 }
 
+std::map<std::string, std::string> constantMarks(const YamlValue& root)
+{
+  std::map<std::string, std::string> marks;
+  for (const char* group : { "constants", "operation_codes" })
+  {
+    const YamlValue* constants = root.find(group);
+    for (const YamlEntry& entry : constants == nullptr ? std::vector<YamlEntry>() : constants->entries)
+    {
+      if (const YamlValue* mark = entry.value.find(MARK))
+      {
+        marks[entry.key] = mark->text;
+      }
+    }
+  }
+  return marks;
+}
+
+void nameConstants(const YamlValue& root, YamlValue& changes)
+{
+  const YamlValue* constants = root.find("constants");
+  if (constants == nullptr || changes.kind != YamlValue::Kind::Map)
+  {
+    return;
+  }
+  YamlValue moved;
+  moved.kind = YamlValue::Kind::Map;
+  moved.where = changes.where;
+  for (auto entry = changes.entries.begin(); entry != changes.entries.end();)
+  {
+    const bool constant = constants->find(entry->key) != nullptr && root.find(entry->key) == nullptr;
+    if (!constant)
+    {
+      ++entry;
+      continue;
+    }
+    moved.entries.push_back(*entry);
+    entry = changes.entries.erase(entry);
+  }
+  if (moved.entries.empty())
+  {
+    return;
+  }
+  if (YamlValue* given = changes.find("constants"))
+  {
+    given->entries.insert(given->entries.end(), moved.entries.begin(), moved.entries.end());
+    return;
+  }
+  YamlEntry entry;
+  entry.key = "constants";
+  entry.where = changes.where;
+  entry.value = moved;
+  changes.entries.push_back(entry);
+}
+
 void mergeOverrides(YamlValue& root, const YamlValue& changes)
 {
+  YamlValue* const value = root.find("value");
+  if (root.kind == YamlValue::Kind::Map && value != nullptr && changes.kind == YamlValue::Kind::Scalar)
+  {
+    // A plain number stands for the whole constant.
+    *value = changes;
+    root.erase(MARK);
+    return;
+  }
   if (root.kind != YamlValue::Kind::Map || changes.kind != YamlValue::Kind::Map || changesSpace(root, changes))
   {
     root = changes;

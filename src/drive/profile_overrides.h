@@ -3,6 +3,7 @@
 #ifndef INVERTER_BUS_SRC_DRIVE_PROFILE_OVERRIDES_H
 #define INVERTER_BUS_SRC_DRIVE_PROFILE_OVERRIDES_H
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -16,6 +17,12 @@ namespace drive
 {
 /// All names that a profile marks as unconfirmed.
 std::set<std::string> unconfirmedNames(const YamlValue& root);
+
+/// Names of the constants and the marks that they carry: a user may confirm a constant by either.
+std::map<std::string, std::string> constantMarks(const YamlValue& root);
+
+/// Moves keys of \p changes that are names of constants in \p root under `constants`, where they belong.
+void nameConstants(const YamlValue& root, YamlValue& changes);
 
 /// Puts \p changes over \p root: maps are merged key by key, anything else is replaced. A value that says what is
 /// written, where it lies or what a count means confirms the item that it is in.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "codec.h"
+
 namespace inverter_bus
 {
 namespace drive
@@ -24,9 +26,9 @@ std::vector<Entry> sortedByPlace(const std::map<std::string, Item>& items)
     entries.push_back({ &field, &item });
   }
   const auto before = [](const Entry& a, const Entry& b) {
-    if (a.item->space != b.item->space)
+    if (a.item->space != b.item->space || a.item->area != b.item->area)
     {
-      return a.item->space == Space::Coil;
+      return a.item->space != b.item->space ? a.item->space < b.item->space : a.item->area < b.item->area;
     }
     // At the same start the longest first: the others then fall into its block.
     return a.item->number != b.item->number ? a.item->number < b.item->number : a.item->size > b.item->size;
@@ -38,26 +40,49 @@ std::vector<Entry> sortedByPlace(const std::map<std::string, Item>& items)
 /// True if every number from \p first to \p last is known to be answered.
 bool insideSpan(unsigned first, unsigned last, Space space, const Profile& profile)
 {
+  if (space != Space::Coil && space != Space::Register)
+  {
+    return false;
+  }
   const auto& spans = space == Space::Coil ? profile.coil_spans : profile.register_spans;
   return std::any_of(spans.begin(), spans.end(),
                      [first, last](const auto& span) { return span.first <= first && last <= span.second; });
 }
 
+unsigned readLimit(Space space, const Profile& profile)
+{
+  if (space == Space::ControllerStatus)
+  {
+    return 1;
+  }
+  return space == Space::Coil ? profile.read_coils : profile.read_registers;
+}
+
+unsigned positionOf(std::uint16_t number, Space space, const Profile& profile)
+{
+  return space == Space::Register ? profile.position(number) : number;
+}
+
+/// Words from the block's first to the end of \p item.
+unsigned reach(const ReadBlock& block, const Item& item, const Profile& profile)
+{
+  return positionOf(item.number, item.space, profile) + item.size - positionOf(block.number, block.space, profile);
+}
+
 bool fits(const ReadBlock& block, const Item& item, const Profile& profile)
 {
-  if (block.space != item.space)
+  if (block.space != item.space || block.area != item.area)
   {
     return false;
   }
-  const unsigned block_end = block.number + block.count;
-  const unsigned end = std::max<unsigned>(block_end, item.number + item.size);
-  const unsigned limit = item.space == Space::Coil ? profile.read_coils : profile.read_registers;
-  if (end - block.number > limit)
+  if (std::max(block.count, reach(block, item, profile)) > readLimit(item.space, profile))
   {
     return false;
   }
   // Items that touch or overlap leave no gap; a gap must lie in one span as a whole.
-  return item.number <= block_end || insideSpan(block_end, item.number - 1U, item.space, profile);
+  const unsigned gap_first = block.number + block.count;
+  const bool touches = reach(block, item, profile) <= block.count + item.size;
+  return touches || insideSpan(gap_first, item.number - 1U, item.space, profile);
 }
 }  // namespace
 
@@ -69,10 +94,10 @@ std::vector<ReadBlock> planReads(const std::map<std::string, Item>& items, const
     const Item& item = *entry.item;
     if (blocks.empty() || !fits(blocks.back(), item, profile))
     {
-      blocks.push_back({ item.space, item.number, item.address, item.size, {} });
+      blocks.push_back(blockAround(item));
     }
     ReadBlock& block = blocks.back();
-    block.count = std::max<unsigned>(block.count, item.number + item.size - block.number);
+    block.count = std::max(block.count, reach(block, item, profile));
     block.fields.push_back(*entry.field);
   }
   return blocks;

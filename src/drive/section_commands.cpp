@@ -3,7 +3,9 @@
 // Sections points, sequences, store_busy, writes: what the driver sends.
 
 #include <algorithm>
+#include <cmath>
 
+#include "numbers.h"
 #include "profile_builder.h"
 
 namespace inverter_bus
@@ -16,16 +18,18 @@ constexpr double MAX_PAUSE = 10.0;
 
 const std::vector<std::string>& sequenceNames()
 {
-  static const std::vector<std::string> NAMES = { "forward", "reverse", "stop",    "coast",
-                                                  "quick",   "reset",   "release", "store" };
+  static const std::vector<std::string> NAMES = { "forward", "reverse", "stop",    "coast",      "quick",      "reset",
+                                                  "release", "store",   "connect", "open_setup", "close_setup" };
   return NAMES;
 }
 
 void readPoint(const std::string& name, const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
 {
   ItemRules rules;
+  rules.written = true;
   YamlMap map(cursor);
   const auto item = readItem(map, numbering, rules);
+  const bool wears = map.flag("wears", false);
   map.finish();
   if (map.has("mask"))
   {
@@ -33,7 +37,7 @@ void readPoint(const std::string& name, const YamlCursor& cursor, const Numberin
   }
   if (item)
   {
-    profile.points[name] = Point{ name, *item };
+    profile.points[name] = Point{ name, *item, wears };
     if (!item->unconfirmed.empty())
     {
       profile.unconfirmed.insert(item->unconfirmed);
@@ -41,8 +45,27 @@ void readPoint(const std::string& name, const YamlCursor& cursor, const Numberin
   }
 }
 
-/// {run: 1}, {frequency: setpoint}, {trip_reset: 1, pause: 0.1}
-void readStep(const YamlCursor& cursor, Sequence& sequence)
+/// The number behind a name of the sections constants and operation_codes.
+bool readNamedValue(const YamlCursor& value, const Numbering& numbering, Step& step)
+{
+  const auto constant = numbering.constants.find(value.value().text);
+  if (value.value().kind != YamlValue::Kind::Scalar || constant == numbering.constants.end())
+  {
+    return false;
+  }
+  step.unconfirmed = constant->second.unconfirmed;
+  const double number = constant->second.value.value_or(0.0);
+  if (number != std::floor(number) || number < 0.0 || number > 4294967295.0)
+  {
+    value.complain("the constant is " + formatNumber(number) + ": allowed: an integer from 0 on");
+    return true;
+  }
+  step.value = static_cast<std::uint32_t>(number);
+  return true;
+}
+
+/// {run: 1}, {frequency: setpoint}, {trip_reset: 1, pause: 0.1}, {command: 0xE000, reply: none}
+void readStep(const YamlCursor& cursor, const Numbering& numbering, Sequence& sequence)
 {
   Step step;
   std::size_t points = 0;
@@ -51,6 +74,11 @@ void readStep(const YamlCursor& cursor, Sequence& sequence)
     if (key == "pause")
     {
       step.pause = value.number(0.0, MAX_PAUSE).value_or(0.0);
+      continue;
+    }
+    if (key == "reply")
+    {
+      step.expects_reply = !value.choice({ "none" });
       continue;
     }
     ++points;
@@ -62,14 +90,14 @@ void readStep(const YamlCursor& cursor, Sequence& sequence)
         value.complain("setpoint is the value of the point frequency only");
       }
     }
-    else
+    else if (!readNamedValue(value, numbering, step))
     {
       step.value = static_cast<std::uint32_t>(value.integer(0, 0xFFFFFFFFLL).value_or(0));
     }
   }
   if (cursor.isMap() && points != 1)
   {
-    cursor.complain("a step names exactly one point, and may have a pause");
+    cursor.complain("a step names exactly one point, and may have pause and reply");
     return;
   }
   if (points == 1)
@@ -78,7 +106,7 @@ void readStep(const YamlCursor& cursor, Sequence& sequence)
   }
 }
 
-void readSequence(const std::string& name, const YamlCursor& cursor, Profile& profile)
+void readSequence(const std::string& name, const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
 {
   Sequence sequence;
   std::optional<YamlCursor> steps = cursor;
@@ -96,7 +124,7 @@ void readSequence(const std::string& name, const YamlCursor& cursor, Profile& pr
   }
   for (const YamlCursor& step : steps->list())
   {
-    readStep(step, sequence);
+    readStep(step, numbering, sequence);
   }
   if (steps->isList() && steps->value().items.empty())
   {
@@ -109,7 +137,7 @@ void readSequence(const std::string& name, const YamlCursor& cursor, Profile& pr
   profile.sequences[name] = sequence;
 }
 
-void readSequences(const YamlCursor& cursor, Profile& profile)
+void readSequences(const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
 {
   const auto& names = sequenceNames();
   for (const auto& [name, sequence] : cursor.entries())
@@ -119,7 +147,7 @@ void readSequences(const YamlCursor& cursor, Profile& profile)
       sequence.complain("unknown key: allowed: " + join(names));
       continue;
     }
-    readSequence(name, sequence, profile);
+    readSequence(name, sequence, numbering, profile);
   }
 }
 
@@ -149,9 +177,9 @@ void readCommands(YamlMap& root, const Numbering& numbering, Profile& profile)
   {
     for (const auto& [name, point] : cursor->entries())
     {
-      if (name == "pause")
+      if (name == "pause" || name == "reply")
       {
-        point.complain("'pause' is a word of the sequences: allowed: any other name");
+        point.complain("'" + name + "' is a word of the sequences: allowed: any other name");
         continue;
       }
       readPoint(name, point, numbering, profile);
@@ -159,12 +187,13 @@ void readCommands(YamlMap& root, const Numbering& numbering, Profile& profile)
   }
   if (const auto cursor = root.require("sequences"))
   {
-    readSequences(*cursor, profile);
+    readSequences(*cursor, numbering, profile);
   }
   readStoreBusy(root, numbering, profile);
   if (const auto cursor = root.find("writes"))
   {
-    profile.writes_reach_eeprom = cursor->choice({ "ram", "eeprom" }).value_or("ram") == "eeprom";
+    const std::string writes = cursor->choice({ "ram", "eeprom", "unknown" }).value_or("ram");
+    profile.writes = writes == "ram" ? Writes::Ram : writes == "eeprom" ? Writes::Eeprom : Writes::Unknown;
   }
 }
 }  // namespace drive

@@ -227,6 +227,7 @@ void readFaults(YamlMap& root, const Numbering& numbering, Profile& profile)
     {
       profile.warnings = readTable(*table, profile);
     }
+    profile.warning_bits = warnings.flag("bits", false);
     warnings.finish();
   }
 }

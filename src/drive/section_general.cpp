@@ -12,7 +12,8 @@ namespace drive
 {
 namespace
 {
-constexpr std::int64_t MAX_STATION = 247;
+constexpr std::int64_t MAX_MODBUS_STATION = 247;
+constexpr std::int64_t MAX_COMPOWAY_STATION = 99;
 constexpr double MAX_FREQUENCY = 10000.0;
 constexpr double MAX_DELAY = 60.0;
 
@@ -46,6 +47,51 @@ std::set<std::string> readParities(const YamlCursor& cursor)
     }
   }
   return result;
+}
+
+bool isCompoway(const Profile& profile)
+{
+  return profile.protocol == "compoway_f";
+}
+
+/// "8E1": data bits, parity, stop bits.
+void readCharacters(const YamlCursor& cursor, Profile& profile)
+{
+  static const std::map<char, std::string> PARITIES = { { 'N', "none" }, { 'E', "even" }, { 'O', "odd" } };
+  const unsigned least = isCompoway(profile) ? 7 : 8;
+  for (const YamlCursor& entry : cursor.list())
+  {
+    const std::string text = entry.text().value_or("");
+    const bool form = text.size() == 3 && PARITIES.count(text[1]) != 0 && (text[2] == '1' || text[2] == '2');
+    const unsigned bits = form ? static_cast<unsigned>(text[0] - '0') : 0;
+    if (!form || bits < least || bits > 8)
+    {
+      entry.reject("data bits, parity and stop bits, such as 8N2, 8E1 or 8O1" +
+                   std::string(least == 7 ? ", 7E2" : " (Modbus RTU: 8 data bits)"));
+      continue;
+    }
+    profile.characters.insert(text);
+    profile.data_bits.insert(bits);
+    profile.parities.insert(PARITIES.at(text[1]));
+    profile.stop_bits.insert(static_cast<unsigned>(text[2] - '0'));
+  }
+  if (cursor.isList() && cursor.value().items.empty())
+  {
+    cursor.complain("is an empty list: at least one value is needed");
+  }
+}
+
+void readServices(const YamlCursor& cursor, Profile& profile)
+{
+  const std::set<unsigned> known = { 0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005 };
+  profile.functions = readUnsignedSet(cursor, 1, 0xFFFF);
+  for (const unsigned service : profile.functions)
+  {
+    if (known.count(service) == 0)
+    {
+      cursor.complain("service " + formatHex(service) + ": allowed: 0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005");
+    }
+  }
 }
 
 void readFunctions(const YamlCursor& cursor, Profile& profile)
@@ -91,9 +137,10 @@ void readExceptions(YamlMap& root, Profile& profile)
   {
     const auto code = parseInteger(key);
     const auto text = meaning.text();
-    if (!code || *code < 1 || *code > 0xFF)
+    const std::int64_t highest = isCompoway(profile) ? 0xFFFF : 0xFF;
+    if (!code || *code < 1 || *code > highest)
     {
-      meaning.complain("the exception code '" + key + "': allowed: an integer from 1 to 255");
+      meaning.complain("the exception code '" + key + "': allowed: an integer from 1 to " + std::to_string(highest));
     }
     else if (text)
     {
@@ -117,10 +164,82 @@ void readBroadcast(YamlMap& root, Profile& profile)
 }
 }  // namespace
 
+namespace
+{
+void readStations(const YamlCursor& cursor, Profile& profile)
+{
+  YamlMap stations(cursor);
+  // Modbus keeps 0 for the broadcast; CompoWay/F has letters for that.
+  const std::int64_t lowest = isCompoway(profile) ? 0 : 1;
+  const std::int64_t highest = isCompoway(profile) ? MAX_COMPOWAY_STATION : MAX_MODBUS_STATION;
+  const auto first = stations.require("first");
+  const auto last = stations.require("last");
+  profile.first_station = static_cast<unsigned>(first ? first->integer(lowest, highest).value_or(1) : 1);
+  profile.last_station = static_cast<unsigned>(last ? last->integer(lowest, highest).value_or(highest) : highest);
+  if (profile.last_station < profile.first_station)
+  {
+    cursor.complain("last is below first");
+  }
+  stations.finish();
+}
+
+void readSerial(const YamlCursor& cursor, Profile& profile)
+{
+  YamlMap serial(cursor);
+  const auto baud_rates = serial.require("baud_rates");
+  profile.baud_rates = baud_rates ? readUnsignedSet(*baud_rates, 110, 4000000) : std::set<unsigned>();
+  if (const auto characters = serial.find("characters"))
+  {
+    readCharacters(*characters, profile);
+    serial.finish();
+    return;
+  }
+  const auto data_bits = serial.require("data_bits");
+  const auto parity = serial.require("parity");
+  const auto stop_bits = serial.require("stop_bits");
+  // A Modbus RTU character has 8 data bits, whatever the drive's other protocols use.
+  const std::int64_t least = isCompoway(profile) ? 7 : 8;
+  profile.data_bits = data_bits ? readUnsignedSet(*data_bits, least, 8) : std::set<unsigned>();
+  profile.parities = parity ? readParities(*parity) : std::set<std::string>();
+  profile.stop_bits = stop_bits ? readUnsignedSet(*stop_bits, 1, 2) : std::set<unsigned>();
+  serial.finish();
+}
+
+void readModbusLimits(YamlMap& limits, Profile& profile)
+{
+  if (const auto functions = limits.require("functions"))
+  {
+    readFunctions(*functions, profile);
+  }
+  // Upper ends: Modbus application protocol V1.1b3, sections 6.1, 6.3 and 6.12.
+  profile.read_registers = static_cast<unsigned>(limits.integer("read_registers", 1, 125, 1));
+  profile.write_registers = static_cast<unsigned>(limits.integer("write_registers", 1, 123, 1));
+  profile.read_coils = static_cast<unsigned>(limits.integer("read_coils", 1, 2000, 1));
+  if (limits.has("hole"))
+  {
+    profile.hole = static_cast<std::uint16_t>(limits.integer("hole", 0, 0xFFFF, 0));
+  }
+}
+
+void readCompowayLimits(YamlMap& limits, Profile& profile)
+{
+  if (const auto services = limits.require("services"))
+  {
+    readServices(*services, profile);
+  }
+  profile.frame = static_cast<unsigned>(limits.integer("frame", 32, 256, 40));
+  // A reply has 17 characters and 8 for every element, the request of a write 24 and 8.
+  profile.read_registers = static_cast<unsigned>(limits.integer("read_elements", 1, (profile.frame - 17) / 8, 1));
+  profile.write_registers = static_cast<unsigned>(limits.integer("write_elements", 1, (profile.frame - 24) / 8, 1));
+}
+}  // namespace
+
 Numbering readNumbering(YamlMap& root)
 {
   Numbering result;
-  const auto cursor = root.require("numbering");
+  const auto protocol = root.find("protocol");
+  result.variables = protocol && protocol->value().text == "compoway_f";
+  const auto cursor = result.variables ? std::nullopt : root.require("numbering");
   if (!cursor)
   {
     return result;
@@ -131,6 +250,7 @@ Numbering readNumbering(YamlMap& root)
     result.register_offset = offset->integer(-0xFFFF, 0).value_or(0);
   }
   result.coil_offset = numbering.integer("coil_offset", -0xFFFF, 0, 0);
+  result.decimal = numbering.flag("decimal", false);
   numbering.text("source");
   numbering.finish();
   return result;
@@ -159,35 +279,15 @@ void readLine(YamlMap& root, Profile& profile)
 {
   if (const auto cursor = root.require("protocol"))
   {
-    profile.protocol = cursor->choice({ "modbus_rtu" }).value_or("");
+    profile.protocol = cursor->choice({ "modbus_rtu", "compoway_f" }).value_or("");
   }
   if (const auto cursor = root.require("stations"))
   {
-    YamlMap stations(*cursor);
-    const auto first = stations.require("first");
-    const auto last = stations.require("last");
-    profile.first_station = static_cast<unsigned>(first ? first->integer(1, MAX_STATION).value_or(1) : 1);
-    profile.last_station =
-        static_cast<unsigned>(last ? last->integer(1, MAX_STATION).value_or(MAX_STATION) : MAX_STATION);
-    if (profile.last_station < profile.first_station)
-    {
-      cursor->complain("last is below first");
-    }
-    stations.finish();
+    readStations(*cursor, profile);
   }
   if (const auto cursor = root.require("serial"))
   {
-    YamlMap serial(*cursor);
-    const auto baud_rates = serial.require("baud_rates");
-    const auto data_bits = serial.require("data_bits");
-    const auto parity = serial.require("parity");
-    const auto stop_bits = serial.require("stop_bits");
-    profile.baud_rates = baud_rates ? readUnsignedSet(*baud_rates, 110, 4000000) : std::set<unsigned>();
-    // A Modbus RTU character has 8 data bits, whatever the drive's other protocols use.
-    profile.data_bits = data_bits ? readUnsignedSet(*data_bits, 8, 8) : std::set<unsigned>();
-    profile.parities = parity ? readParities(*parity) : std::set<std::string>();
-    profile.stop_bits = stop_bits ? readUnsignedSet(*stop_bits, 1, 2) : std::set<unsigned>();
-    serial.finish();
+    readSerial(*cursor, profile);
   }
 }
 
@@ -196,14 +296,7 @@ void readLimits(YamlMap& root, const Numbering& numbering, Profile& profile)
   if (const auto cursor = root.require("limits"))
   {
     YamlMap limits(*cursor);
-    if (const auto functions = limits.require("functions"))
-    {
-      readFunctions(*functions, profile);
-    }
-    // Upper ends: Modbus application protocol V1.1b3, sections 6.1, 6.3 and 6.12.
-    profile.read_registers = static_cast<unsigned>(limits.integer("read_registers", 1, 125, 1));
-    profile.write_registers = static_cast<unsigned>(limits.integer("write_registers", 1, 123, 1));
-    profile.read_coils = static_cast<unsigned>(limits.integer("read_coils", 1, 2000, 1));
+    isCompoway(profile) ? readCompowayLimits(limits, profile) : readModbusLimits(limits, profile);
     limits.text("source");
     limits.finish();
   }
@@ -232,6 +325,7 @@ void readTiming(YamlMap& root, Profile& profile)
     {
       profile.response_timeout = timing.number("response_timeout", 0.001, MAX_DELAY, 0.1);
     }
+    profile.quiet_before = timing.number("quiet_before", 0.0, 1.0, 0.0);
     profile.deaf_after_reset = timing.number("deaf_after_reset", 0.0, MAX_DELAY, 0.0);
     profile.reply_delay_parameter = timing.name("reply_delay_parameter");
     timing.text("source");

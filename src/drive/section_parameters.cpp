@@ -14,7 +14,7 @@ namespace
 /// The smallest and largest value that the register itself can hold.
 std::pair<double, double> registerRange(const Item& item)
 {
-  const double counts = item.size == 2 ? 4294967296.0 : 65536.0;
+  const double counts = static_cast<double>(largestRaw(item)) + 1.0;
   const double lowest = item.is_signed ? -counts / 2.0 : 0.0;
   return { scaleCounts(lowest, item.resolution), scaleCounts(lowest + counts - 1.0, item.resolution) };
 }
@@ -71,6 +71,7 @@ void readParameter(const std::string& name, const YamlCursor& cursor, const Numb
   }
   parameter.read_only = map.flag("read_only", false);
   parameter.communication = map.flag("communication", false);
+  parameter.setup = map.flag("setup", false);
   map.finish();
   if (!item)
   {

@@ -60,6 +60,7 @@ ItemRules rulesOf(FieldKind kind)
   rules.bit = kind == FieldKind::Flag;
   rules.values = kind == FieldKind::Flag || kind == FieldKind::Direction;
   rules.scale = kind == FieldKind::Quantity;
+  rules.base = kind == FieldKind::Quantity;
   return rules;
 }
 
@@ -71,7 +72,7 @@ void checkMeaning(FieldKind kind, const std::string& field, const Item& item, co
   }
   if (kind == FieldKind::Flag)
   {
-    if (item.space == Space::Register && !item.bit && item.values.empty())
+    if (item.space != Space::Coil && !item.bit && item.values.empty())
     {
       cursor.complain("a register that is true or false needs bit or values");
     }
@@ -122,15 +123,37 @@ void readField(const std::string& field, const YamlCursor& cursor, const Numberi
   {
     profile.when_faulted.insert(field);
   }
-  if (!item->unconfirmed.empty())
+  for (const std::string& mark : { item->unconfirmed, item->own_mark })
   {
-    profile.unconfirmed.insert(item->unconfirmed);
+    if (!mark.empty())
+    {
+      profile.unconfirmed.insert(mark);
+    }
   }
 }
 }  // namespace
 
+void readKeepAlive(YamlMap& root, const Numbering& numbering, Profile& profile)
+{
+  const auto cursor = root.find("keep_alive");
+  if (!cursor)
+  {
+    return;
+  }
+  ItemRules rules;
+  rules.scale = false;
+  YamlMap map(*cursor);
+  profile.keep_alive = readItem(map, numbering, rules);
+  map.finish();
+  if (profile.keep_alive && !profile.keep_alive->unconfirmed.empty())
+  {
+    cursor->complain("must be confirmed: something must be read from a drive that tells nothing else");
+  }
+}
+
 void readStatus(YamlMap& root, const Numbering& numbering, Profile& profile)
 {
+  readKeepAlive(root, numbering, profile);
   if (const auto cursor = root.require("status"))
   {
     for (const auto& [field, item] : cursor->entries())

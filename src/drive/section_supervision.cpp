@@ -35,11 +35,15 @@ std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key)
   {
     YamlMap map(entry);
     Expectation expectation;
-    const auto parameter = map.require("parameter");
-    const auto accept = map.require("accept");
+    const auto model = key == "identity" ? map.find("model") : std::nullopt;
+    const auto parameter = model ? std::nullopt : map.require("parameter");
+    const auto accept = model ? std::nullopt : map.require("accept");
+    expectation.model = model ? model->text().value_or("") : "";
     expectation.parameter = parameter ? parameter->name().value_or("") : "";
     expectation.accept = accept ? readCodes(*accept) : std::set<std::uint32_t>();
     expectation.advice = map.text("advice");
+    const auto when = key == "command_source" ? map.find("when") : std::nullopt;
+    expectation.when_commanded = when && when->choice({ "commanded" });
     map.text("source");
     map.finish();
     if (accept && accept->isList() && accept->value().items.empty())
@@ -57,23 +61,23 @@ void readSupervision(YamlMap& root, Profile& profile)
   profile.identity = readExpectations(root, "identity");
   profile.command_source = readExpectations(root, "command_source");
   profile.self_restart = readExpectations(root, "self_restart");
+  CommunicationLoss& loss = profile.communication_loss;
+  loss.assumed_timeout = root.number("drive_timeout", 0.0, 3600.0, 0.0);
+  if (const auto action = root.find("drive_loss_action"))
+  {
+    loss.assumed_action = action->choice({ "runs_on", "decelerate", "coast", "trip" }).value_or("");
+  }
   const auto cursor = root.find("communication_loss");
   if (!cursor)
   {
     return;
   }
   YamlMap map(*cursor);
-  CommunicationLoss& loss = profile.communication_loss;
   loss.timeout_parameter = map.name("timeout_parameter");
   loss.action_parameter = map.name("action_parameter");
   if (const auto runs_on = map.find("runs_on"))
   {
     loss.runs_on = readCodes(*runs_on);
-  }
-  loss.assumed_timeout = map.number("drive_timeout", 0.0, 3600.0, 0.0);
-  if (const auto action = map.find("drive_loss_action"))
-  {
-    loss.assumed_action = action->choice({ "runs_on", "decelerate", "coast", "trip" }).value_or("");
   }
   loss.also_idle = map.flag("also_idle", false);
   loss.advice = map.text("advice");

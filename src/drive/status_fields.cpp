@@ -18,6 +18,7 @@ const std::map<std::string, FlagField>& flagFields()
     { "overload_warning", &Monitor::overload_warning },
     { "pid_deviation", &Monitor::pid_deviation },
     { "faulted", &Monitor::faulted },
+    { "restarted", &Monitor::restarted },
   };
   return FIELDS;
 }

@@ -106,7 +106,7 @@ int runNode(Lifetime& lifetime)
   TraceFiles traces(config.trace_directory, ros::this_node::getName(),
                     [](const std::string& text) { log(bus::Level::Warn, text); });
   Publishing publishing(node, *configuration, traces);
-  bus::Bus bus(*configuration, wire::makeSerialPort(config.serial), publishing);
+  bus::Bus bus(*configuration, bus::makePort(config), publishing);
   logStart(config, bus);
   Services services(node, config, bus, traces);
   Commands commands(node, config, bus);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "command_words.h"
+#include "inverter_bus/simulation/compoway_frame.h"
 #include "inverter_bus/simulation/modbus_frame.h"
 #include "inverter_bus/simulation/simulated_bus.h"
 
@@ -20,7 +21,8 @@ namespace
 constexpr double LONGEST = 86400.0;  // [s] of any duration
 
 const char* const HELP =
-    "help; list; bus show|frames [N]|unplug [S]|plug|echo on/off|silent on/off/S|noise [N]|foreign HEX [now] "
+    "help; list; bus show|frames [N]|unplug [S]|plug|echo on/off|silent on/off/S|noise [N]|foreign HEX (CompoWay/F: "
+    "BODY) [now] "
     "[raw]|reset; "
     "NAME show|get CODE|set CODE X|offline [S]|online|trip N|clear|busy S|power_cycle [S]|power on/off|panel HZ|"
     "panel_release|panel_stop|sto on/off|load X|damaged|truncated [BYTES]|noise [BYTES]|late S|foreign station/shape|"
@@ -99,9 +101,24 @@ std::string cutLine(SimulatedBus& bus, CommandWords& words, TimePoint now)
   return "";
 }
 
+Bytes foreignFrame(const std::string& text, bool raw, Protocol protocol)
+{
+  if (!raw && protocol == Protocol::COMPOWAY_F && !text.empty())
+  {
+    return compowayFrame(text);
+  }
+  const std::optional<Bytes> frame = fromHex(text);
+  if (!frame || frame->empty())
+  {
+    const std::string body = protocol == Protocol::COMPOWAY_F ? ", or a body such as 010000601 without raw" : "";
+    throw CommandError("frame " + text + " (allowed: hexadecimal bytes such as 01 03 10 00 00 02" + body + ")");
+  }
+  return raw ? *frame : withModbusCrc(*frame);
+}
+
 std::string sendForeign(SimulatedBus& bus, CommandWords& words, TimePoint now)
 {
-  std::string hex;
+  std::string text;
   bool at_once = false;
   bool raw = false;
   while (!words.empty())
@@ -116,15 +133,10 @@ std::string sendForeign(SimulatedBus& bus, CommandWords& words, TimePoint now)
     }
     else
     {
-      hex += words.take("frame");
+      text += words.take("frame");
     }
   }
-  const std::optional<Bytes> frame = fromHex(hex);
-  if (!frame || frame->empty())
-  {
-    throw CommandError("frame " + hex + " (allowed: hexadecimal bytes such as 01 03 10 00 00 02)");
-  }
-  const Bytes sent = raw ? *frame : withModbusCrc(*frame);
+  const Bytes sent = foreignFrame(text, raw, bus.line().options().settings.protocol);
   bus.line().sendForeign(sent, !at_once, now);
   return " frame=" + toHex(sent);
 }
@@ -185,7 +197,7 @@ void takeScope(CommandWords& words, Fault& fault, TimePoint now)
     }
     else if (words.takeIf("function"))
     {
-      fault.function = static_cast<int>(words.takeNumber("function", 0, 255));
+      fault.function = static_cast<int>(words.takeNumber("function", 0, 65535));
     }
     else
     {
@@ -252,7 +264,7 @@ std::map<std::string, DriveAction> faultActions()
       } },
     { "exception",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
-        const double code = w.takeNumber("exception code", 1, 255);
+        const double code = w.takeNumber("exception code", 1, d.largestException());
         return spoil(d, w, now, FaultKind::EXCEPTION, code);
       } },
     { "lost_request",

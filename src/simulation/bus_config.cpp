@@ -93,9 +93,46 @@ std::string toText(const YAML::Node& value, const std::string& place)
   return value.Scalar();
 }
 
+int toIntegerBetween(const YAML::Node& value, const std::string& place, int minimum, int maximum)
+{
+  try
+  {
+    const int number = value.as<int>();
+    if (number >= minimum && number <= maximum)
+    {
+      return number;
+    }
+  }
+  catch (const YAML::Exception&)
+  {
+    // not an integer: refused below
+  }
+  refuse(place, value, "an integer, " + std::to_string(minimum) + " to " + std::to_string(maximum));
+}
+
+Protocol readProtocol(const YAML::Node& root)
+{
+  const std::string name = root["protocol"] ? toText(root["protocol"], "protocol") : nameOf(Protocol::MODBUS_RTU);
+  for (const Protocol protocol : { Protocol::MODBUS_RTU, Protocol::COMPOWAY_F })
+  {
+    if (name == nameOf(protocol))
+    {
+      return protocol;
+    }
+  }
+  refuse("protocol", root["protocol"], "modbus_rtu, compoway_f");
+}
+
 LineSettings readLine(const YAML::Node& root)
 {
   LineSettings line;
+  line.protocol = readProtocol(root);
+  if (line.protocol == Protocol::COMPOWAY_F)
+  {
+    line.data_bits = 7;
+    line.parity = Parity::EVEN;
+    line.stop_bits = 2;
+  }
   if (root["baud_rate"])
   {
     line.baud_rate =
@@ -118,10 +155,6 @@ LineSettings readLine(const YAML::Node& root)
     }
     line.parity = parity == "none" ? Parity::NONE : (parity == "even" ? Parity::EVEN : Parity::ODD);
   }
-  if (root["protocol"] && toText(root["protocol"], "protocol") != "modbus_rtu")
-  {
-    refuse("protocol", root["protocol"], "modbus_rtu");
-  }
   return line;
 }
 
@@ -135,6 +168,19 @@ void readParameters(const YAML::Node& map, const std::string& place, DriveOption
   {
     const std::string code = entry.first.as<std::string>();
     options.parameters[code] = toNumber(entry.second, place + "/" + code, 0.0, 4294967295.0);
+  }
+}
+
+void readOperationCodes(const YAML::Node& map, const std::string& place, DriveOptions& options)
+{
+  if (!map.IsMap())
+  {
+    refuse(place, map, "a map of operations to codes of four hexadecimal digits");
+  }
+  for (const auto& entry : map)
+  {
+    const std::string operation = entry.first.as<std::string>();
+    options.operation_codes[operation] = toText(entry.second, place + "/" + operation);
   }
 }
 
@@ -177,11 +223,28 @@ void readDetail(const std::string& key, const YAML::Node& value, const std::stri
   {
     options.self_clearing_coils = toFlag(value, place);
   }
+  else if (key == "reverse_word")
+  {
+    options.reverse_word = toInteger(value, place, { 2, 3 });
+  }
+  else if (key == "monitor_base")
+  {
+    options.monitor_base = toIntegerBetween(value, place, 0, 0xFFFF);
+  }
+  else if (key == "operation_codes")
+  {
+    readOperationCodes(value, place, options);
+  }
+  else if (key == "area_1_readable")
+  {
+    options.area_1_readable = toFlag(value, place);
+  }
   else
   {
     throw ConfigError(place +
                       ": unknown key (allowed: model, parameters, turnaround, start_up_time, reset_silence, "
-                      "eeprom_time, load, restart_after_timeout, self_clearing_coils)");
+                      "eeprom_time, load, restart_after_timeout, self_clearing_coils, reverse_word, monitor_base, "
+                      "operation_codes, area_1_readable)");
   }
 }
 
@@ -284,11 +347,31 @@ void readMask(const YAML::Node& node, const YAML::Node& defaults, BusConfig& con
   }
 }
 
+void checkModel(const DriveConfig& drive, Protocol protocol)
+{
+  const std::string& name = drive.options.name;
+  const std::vector<std::string> models = driveModels();
+  if (std::find(models.begin(), models.end(), drive.model) == models.end())
+  {
+    std::string allowed;
+    for (const std::string& model : models)
+    {
+      allowed += model + ", ";
+    }
+    throw ConfigError("drive: " + drive.model + " of " + name + " can't be simulated (allowed: " + allowed +
+                      "or one of them as simulation/" + name + "/model)");
+  }
+  if (protocolOf(drive) != protocol)
+  {
+    throw ConfigError("drive: " + drive.model + " of " + name + " speaks " + nameOf(protocolOf(drive)) +
+                      ", the bus speaks " + nameOf(protocol) + " (allowed: drives of one protocol, named by protocol)");
+  }
+}
+
 void finish(BusConfig& config)
 {
   std::set<std::string> names{ "bus", "help", "list" };
   std::set<int> stations;
-  const std::vector<std::string> models = driveModels();
   for (DriveConfig& drive : config.drives)
   {
     const std::string& name = drive.options.name;
@@ -301,12 +384,7 @@ void finish(BusConfig& config)
       throw ConfigError("scan_list: node " + std::to_string(drive.options.station) + " of " + name +
                         " is taken (allowed: each station once)");
     }
-    if (std::find(models.begin(), models.end(), drive.model) == models.end())
-    {
-      throw ConfigError("drive: " + drive.model + " of " + name +
-                        " can't be simulated (allowed: omron_mx2, omron_rx, or one of them as simulation/" + name +
-                        "/model)");
-    }
+    checkModel(drive, config.line.protocol);
     drive.options.line = config.line;
     drive.options.seed = 1000U + static_cast<std::uint64_t>(drive.options.station);
   }

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "inverter_bus/simulation/motor_watch.h"
+#include "inverter_bus/simulation/panel_parameters.h"
+
 namespace inverter_bus
 {
 namespace simulation
@@ -24,8 +27,6 @@ constexpr std::uint32_t SOURCE_MODBUS = 3;
 constexpr std::uint32_t INPUT_FREE_RUN = 11;  // C001-C008 = 11: FRS (MEM)
 constexpr std::uint32_t ACTION_IGNORE = 2;    // C076
 constexpr std::size_t TRIP_BLOCKS = 6;
-constexpr double STEP = 0.1;            // [s] between two looks at current and temperature while the motor turns
-constexpr double OVERCURRENT = 2.2;     // x rated current: trips at once
 constexpr double OVERLOAD_TIME = 60.0;  // [s] at 150 % of the thermal level until E05
 constexpr double COOLING_TIME = 300.0;  // [s]
 }  // namespace
@@ -64,7 +65,7 @@ HitachiDrive::Index HitachiDrive::known(const char* code) const
 
 double HitachiDrive::panelValue(Index index) const
 {
-  return memory_.ram(index) / std::pow(10.0, memory_.info(index).decimals);
+  return simulation::panelValue(memory_, index);
 }
 
 void HitachiDrive::commission()
@@ -98,19 +99,7 @@ void HitachiDrive::commission()
 
 void HitachiDrive::commission(const std::string& code, double value)
 {
-  const Index index = memory_.find(code);
-  if (index == ParameterMemory::NONE)
-  {
-    throw std::invalid_argument(model_.name + " has no parameter " + code);
-  }
-  const Parameter& info = memory_.info(index);
-  const double raw = std::round(value * std::pow(10.0, info.decimals));
-  if (!(raw >= 0.0 && raw <= 4294967295.0) || !memory_.accepts(index, static_cast<std::uint32_t>(raw)))
-  {
-    throw std::invalid_argument("value out of range for " + code + " (" + panelText(info, info.minimum) + "-" +
-                                panelText(info, info.maximum) + ")");
-  }
-  memory_.commission(index, static_cast<std::uint32_t>(raw));
+  commissionAtPanel(memory_, model_.name, code, value);
 }
 
 bool HitachiDrive::serialFits() const
@@ -207,13 +196,7 @@ TimePoint HitachiDrive::nextChange(TimePoint limit) const
   {
     next = std::min(next, *deadline);
   }
-  if (motor_.turning())
-  {
-    const double corner = motor_.timeToNextCorner();
-    // One tick more: the corner must not be missed by rounding down.
-    next = std::min(next, clock() + (corner > 0.0 && corner < STEP ? seconds(corner) + Duration(1) : seconds(STEP)));
-  }
-  return next;
+  return nextLook(motor_, clock(), next);
 }
 
 void HitachiDrive::move(double seconds)

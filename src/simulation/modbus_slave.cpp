@@ -70,6 +70,11 @@ bool ModbusSlave::isGroup(std::uint8_t station) const
   return station == 0;
 }
 
+bool ModbusSlave::takesBroadcast(const Bytes& /*frame*/) const
+{
+  return true;
+}
+
 bool ModbusSlave::isBroadcast(const Bytes& frame) const
 {
   return frame[0] != station();
@@ -93,7 +98,12 @@ std::optional<int> ModbusSlave::functionOf(const Bytes& frame) const
 Answer ModbusSlave::exceptionAnswer(const Bytes& frame, int code)
 {
   const Bytes reply{ frame[0], static_cast<std::uint8_t>(frame[1] | 0x80U), static_cast<std::uint8_t>(code) };
-  return Answer{ withModbusCrc(reply), replyDelay() };
+  return Answer{ withModbusCrc(reply), replyDelay(), true };
+}
+
+int ModbusSlave::largestException() const
+{
+  return 0xFF;
 }
 
 Bytes ModbusSlave::foreignReply(const Bytes& reply, bool other_station)
@@ -118,7 +128,7 @@ Bytes ModbusSlave::foreignReply(const Bytes& reply, bool other_station)
 std::optional<Answer> ModbusSlave::answer(const Bytes& frame, TimePoint /*now*/, bool& good)
 {
   const bool for_all = isBroadcast(frame);
-  if (for_all && limits_.broadcast_functions.count(frame[1]) == 0)
+  if (for_all && (limits_.broadcast_functions.count(frame[1]) == 0 || !takesBroadcast(frame)))
   {
     return std::nullopt;
   }
@@ -134,7 +144,7 @@ std::optional<Answer> ModbusSlave::answer(const Bytes& frame, TimePoint /*now*/,
   {
     return exceptionAnswer(frame, static_cast<int>(exception));
   }
-  return Answer{ withModbusCrc(reply), replyDelay() };
+  return Answer{ withModbusCrc(reply), replyDelay(), false };
 }
 
 ModbusException ModbusSlave::execute(const Bytes& frame, Bytes& reply)
@@ -156,7 +166,7 @@ ModbusException ModbusSlave::execute(const Bytes& frame, Bytes& reply)
     case LOOP_BACK:
       if (modbusWord(frame, 2) != 0)
       {
-        return ModbusException::FORMAT_NOT_ACCEPTABLE;
+        return limits_.loop_back_refusal;
       }
       appendHead(frame, reply, 6);
       return ModbusException::NONE;

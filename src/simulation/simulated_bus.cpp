@@ -174,8 +174,8 @@ const std::deque<FrameRecord>& SimulatedBus::frames() const
 std::string frameText(const FrameRecord& frame, TimePoint start)
 {
   char head[96];
-  const int station = frame.bytes.empty() ? 0 : frame.bytes.front();
-  std::snprintf(head, sizeof(head), "%.6f %s %d ", toSeconds(frame.time - start), senderOf(frame.source), station);
+  const char* const station = frame.station.empty() ? "?" : frame.station.c_str();
+  std::snprintf(head, sizeof(head), "%.6f %s %s ", toSeconds(frame.time - start), senderOf(frame.source), station);
   return head + toHex(frame.bytes) + (frame.remark.empty() ? "" : " # " + frame.remark);
 }
 }  // namespace simulation

@@ -66,6 +66,11 @@ bool SimulatedDrive::listening() const
   return canSend() && clock_ >= deaf_until_ && understandsLine();
 }
 
+bool SimulatedDrive::answersDamaged() const
+{
+  return false;
+}
+
 bool SimulatedDrive::understandsLine() const
 {
   return true;
@@ -126,7 +131,10 @@ std::optional<Answer> SimulatedDrive::handle(const Bytes& frame, TimePoint now)
   if (!isWholeFrame(frame))
   {
     ++counters_.damaged;
-    return std::nullopt;
+    if (!answersDamaged())
+    {
+      return std::nullopt;
+    }
   }
   const bool for_all = isBroadcast(frame);
   return serve(frame, for_all ? std::vector<Fault>() : faults_.take(functionOf(frame), now), now);
@@ -155,7 +163,7 @@ std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const std::vecto
     return std::nullopt;
   }
   ++counters_.exchanges;
-  counters_.exceptions += reply->bytes.size() > 1 && reply->bytes[1] >= 0x80U ? 1 : 0;
+  counters_.exceptions += reply->exception ? 1 : 0;
   for (const Fault& fault : faults)
   {
     spoil(*reply, fault);

@@ -5,16 +5,34 @@
 
 #include <algorithm>
 
+#include "inverter_bus/simulation/compoway_frame.h"
+
 namespace inverter_bus
 {
 namespace simulation
 {
 using Source = FrameRecord::Source;
 
+namespace
+{
+constexpr std::size_t LONGEST_UNFINISHED = 256;  // [bytes] more without an end is nothing that any drive keeps
+
+std::string stationOf(const Bytes& frame, Protocol protocol)
+{
+  if (protocol == Protocol::MODBUS_RTU)
+  {
+    return std::to_string(frame.front());
+  }
+  const std::optional<Bytes> found = findCompowayFrame(frame);
+  return found ? compowayBody(*found).substr(0, 2) : std::string();
+}
+}  // namespace
+
 SimulatedLine::SimulatedLine(const LineOptions& options, TimePoint start)
   : options_(options)
   , character_(options.settings.characterTime())
   , gap_(options.settings.frameGap())
+  , end_(options.settings.frameEnd())
   , random_(options.seed)
   , last_activity_(start - std::chrono::hours(1))
   , last_seen_(last_activity_)
@@ -95,7 +113,7 @@ TimePoint SimulatedLine::dueTime(const Transmission& transmission) const
     const bool whole = options_.delivery_step == Duration::zero();
     return whole ? end : std::min(end, first + options_.delivery_step);
   }
-  return isRequest(transmission) ? end + gap_ : end;
+  return isRequest(transmission) ? end + end_ : end;
 }
 
 SimulatedLine::Transmission& SimulatedLine::open(Source source)
@@ -120,9 +138,10 @@ SimulatedLine::Transmission* SimulatedLine::openRequest(Source source)
 void SimulatedLine::append(Transmission& transmission, const Bytes& bytes, TimePoint start)
 {
   const std::size_t first = transmission.bytes.size();
+  const unsigned int sent_bits = options_.settings.data_bits == 7 ? 0x7FU : 0xFFU;
   for (const std::uint8_t value : bytes)
   {
-    transmission.bytes.push_back({ start, value, false });
+    transmission.bytes.push_back({ start, static_cast<std::uint8_t>(value & sent_bits), false });
     start += character_;
   }
   collide(transmission, first);
@@ -182,7 +201,7 @@ void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
   {
     const TimePoint silent_since = std::max(last_activity_, last_seen_);
     sending = &open(Source::MASTER);
-    sending->early = start + options_.gap_tolerance < silent_since + gap_;
+    sending->early = unfinished_.empty() && start + options_.gap_tolerance < silent_since + gap_;
     sending->for_master = echo_;
   }
   sending->joined = sending->joined || (next_frame && !sending->bytes.empty());
@@ -361,6 +380,28 @@ bool SimulatedLine::owes(const SimulatedDrive* drive) const
          std::any_of(live_.begin(), live_.end(), [drive](const Transmission& one) { return one.drive == drive; });
 }
 
+/// @param[in,out] bytes what was sent; the frame that the drives make of it
+/// @return false when they wait for more
+bool SimulatedLine::takeFrame(Bytes& bytes)
+{
+  if (options_.settings.protocol == Protocol::MODBUS_RTU)
+  {
+    return true;
+  }
+  unfinished_.insert(unfinished_.end(), bytes.begin(), bytes.end());
+  const std::optional<Bytes> frame = findCompowayFrame(unfinished_);
+  if (frame)
+  {
+    bytes = *frame;
+  }
+  const auto start = std::find(unfinished_.rbegin(), unfinished_.rend(), COMPOWAY_STX);
+  if (frame || start == unfinished_.rend() || unfinished_.size() > LONGEST_UNFINISHED)
+  {
+    unfinished_.clear();
+  }
+  return frame.has_value();
+}
+
 void SimulatedLine::finishRequest(Transmission& transmission)
 {
   if (transmission.served || transmission.bytes.empty())
@@ -369,11 +410,15 @@ void SimulatedLine::finishRequest(Transmission& transmission)
   }
   transmission.served = true;
   counters_.requests += transmission.source == Source::MASTER ? 1 : 0;
-  const Bytes frame = valuesOf(transmission);
+  Bytes frame = valuesOf(transmission);
   std::string remark;
   if (silent_)
   {
     remark = "lost: line cut";
+  }
+  else if (!takeFrame(frame))
+  {
+    remark = "unfinished";
   }
   else if ((transmission.early || transmission.joined) && options_.gap == GapRule::ENFORCE)
   {
@@ -389,7 +434,7 @@ void SimulatedLine::finishRequest(Transmission& transmission)
   }
   else
   {
-    serve(transmission, frame, endOf(transmission) + gap_, remark);
+    serve(transmission, frame, endOf(transmission) + end_, remark);
   }
   report(transmission, remark);
 }
@@ -454,6 +499,7 @@ void SimulatedLine::report(const Transmission& transmission, const std::string& 
     record.source = transmission.source;
     record.drive = transmission.drive != nullptr ? transmission.drive->name() : "";
     record.bytes = valuesOf(transmission);
+    record.station = stationOf(record.bytes, options_.settings.protocol);
     record.remark = remark;
     observer_(record);
   }

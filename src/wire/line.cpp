@@ -18,6 +18,19 @@ constexpr double REPLY_SLACK_CHARACTERS = 16.0;
 constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
 /// Station and function: from here on something is likelier to be a frame than noise.
 constexpr std::size_t LIKELY_FRAME = 2;
+
+Outcome outcomeOf(const Parsed& answer)
+{
+  switch (answer.kind)
+  {
+    case Parsed::Kind::Reply:
+      return Outcome::Ok;
+    case Parsed::Kind::NotUnderstood:
+      return Outcome::Damaged;
+    default:
+      return answer.error_id == ERROR_TIMEOUT ? Outcome::Timeout : Outcome::Exception;
+  }
+}
 }  // namespace
 
 /// An exchange whose request has been sent.
@@ -28,6 +41,8 @@ struct Line::Waiting
   }
 
   const Request& request;
+  /// What the request is remembered by if it gets lost.
+  std::string shape;
   TimePoint sent_at;
   TimePoint request_end;
   /// The first byte must have come by then.
@@ -64,7 +79,8 @@ OpenResult Line::open(std::string& error)
   silent_request_.reset();
   const OpenResult result = port_.open(error);
   // Somebody else's frame may have been under way.
-  ready_at_ = clock_.now() + gap();
+  last_use_at_ = clock_.now();
+  ready_at_ = last_use_at_ + gap();
   return result;
 }
 
@@ -85,18 +101,25 @@ TimePoint Line::readyAt() const
 
 bool Line::settle()
 {
+  return settle(Duration{ 0 });
+}
+
+/// \p quiet silence to wait for beyond readyAt().
+bool Line::settle(Duration quiet)
+{
   if (!port_.isOpen())
   {
     return false;
   }
-  const TimePoint give_up = std::max(clock_.now(), ready_at_) + LONGEST_SETTLING;
+  const auto quiet_at = [this, quiet] { return std::max(ready_at_, last_use_at_ + quiet); };
+  const TimePoint give_up = std::max(clock_.now(), quiet_at()) + LONGEST_SETTLING;
   ReceiveResult result = ReceiveResult::Data;
   while (result == ReceiveResult::Data)
   {
     // The rest of a late reply that an adapter delivers in pieces must not run into the next exchange.
     const bool half_a_frame = buffer_.size() >= LIKELY_FRAME;
     const TimePoint rest = half_a_frame ? last_byte_at_ + timing_.patience(protocol_.gapCharacters()) : ready_at_;
-    result = receive(std::min(std::max(ready_at_, rest), give_up));
+    result = receive(std::min(std::max(quiet_at(), rest), give_up));
     consumeIdle();
     result = result == ReceiveResult::Data && clock_.now() >= give_up ? ReceiveResult::Silence : result;
   }
@@ -122,43 +145,27 @@ TimePoint Line::mayAskAt(const Request& request) const
 Reply Line::exchange(const Request& request, Duration turnaround_after)
 {
   flushIdle();
-  silent_request_.reset();
   Reply reply;
+  if (request.quiet_before > Duration{ 0 } && !settle(request.quiet_before))
+  {
+    lose(reply);
+    return reply;
+  }
+  silent_request_.reset();
+  const std::string shape = protocol_.shape(request);
   const Bytes frame = protocol_.frame(request);
   if (!send(frame, reply))
   {
     lose(reply);
     return reply;
   }
-  const bool reply_may_equal =
-      !request.broadcast && protocol_.parse(frame.data(), frame.size(), &request).kind == Parsed::Kind::Reply;
-  echo_.expect(frame, reply_may_equal);
-  Waiting waiting = startWaiting(request, frame, reply.sent_at);
+  expectEcho(request, frame);
+  Waiting waiting = startWaiting(request, reply.sent_at);
+  waiting.shape = shape;
+  last_use_at_ = waiting.request_end;
   ready_at_ = waiting.request_end + (request.broadcast ? std::max(gap(), turnaround_after) : gap());
   waitForReply(waiting, reply);
   return reply;
-}
-
-Duration Line::cost(const Request& request, Duration drive_delay) const
-{
-  const auto request_length = static_cast<double>(protocol_.requestLength(request));
-  const Duration there = gap() + timing_.characters(request_length);
-  if (request.broadcast)
-  {
-    return there;
-  }
-  const double reply_length = request.expects_reply ? static_cast<double>(protocol_.replyLength(request)) : 0.0;
-  return there + gap() + drive_delay + timing_.characters(reply_length);
-}
-
-Duration Line::costUnanswered(const Request& request) const
-{
-  if (request.broadcast || !request.expects_reply)
-  {
-    return cost(request, Duration{ 0 });
-  }
-  const auto request_length = static_cast<double>(protocol_.requestLength(request));
-  return gap() + timing_.characters(request_length) + gap() + request.reply_delay + request.response_timeout;
 }
 
 const LineCounters& Line::counters() const
@@ -193,19 +200,28 @@ bool Line::send(const Bytes& frame, Reply& reply)
   return true;
 }
 
-Line::Waiting Line::startWaiting(const Request& request, const Bytes& frame, TimePoint sent_at)
+/// Has the echo of \p frame taken out where the adapter returns what it sends.
+void Line::expectEcho(const Request& request, const Bytes& frame)
+{
+  const bool reply_may_equal =
+      !request.broadcast && protocol_.parse(frame.data(), frame.size(), &request).kind == Parsed::Kind::Reply;
+  echo_.expect(frame, reply_may_equal);
+}
+
+Line::Waiting Line::startWaiting(const Request& request, TimePoint sent_at)
 {
   Waiting waiting(request);
   waiting.sent_at = sent_at;
   // The UART sends on after the write has returned, unless the write had to wait for it.
-  waiting.request_end = std::max(sent_at + timing_.characters(static_cast<double>(frame.size())), clock_.now());
+  const auto request_length = static_cast<double>(protocol_.requestLength(request));
+  waiting.request_end = std::max(sent_at + timing_.characters(request_length), clock_.now()) + gatewayGap();
   waiting.first_byte_deadline = waiting.request_end + gap();
   waiting.last_deadline = waiting.first_byte_deadline;
   if (request.expects_reply && !request.broadcast)
   {
     waiting.reply_length = protocol_.replyLength(request);
     const double characters = static_cast<double>(waiting.reply_length) + REPLY_SLACK_CHARACTERS;
-    waiting.first_byte_deadline += request.reply_delay + request.response_timeout;
+    waiting.first_byte_deadline += heldBack(request) + request.reply_delay + request.response_timeout;
     waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + REPLY_SLACK;
   }
   return waiting;
@@ -258,6 +274,7 @@ ReceiveResult Line::receive(TimePoint deadline)
   if (result == ReceiveResult::Data)
   {
     last_byte_at_ = clock_.now();
+    last_use_at_ = std::max(last_use_at_, last_byte_at_);
     ready_at_ = std::max(ready_at_, last_byte_at_ + gap());
     head_at_ = was_empty ? last_byte_at_ : head_at_;
   }
@@ -301,11 +318,13 @@ bool Line::consumeHead(Waiting& waiting, Reply& reply)
     case Parsed::Kind::Garbage:
       skip(parsed.consumed);
       return false;
+    case Parsed::Kind::Late:
     case Parsed::Kind::Foreign:
       waiting.foreign |= !noteUnasked(parsed, take(parsed.consumed));
       return false;
     case Parsed::Kind::Reply:
     case Parsed::Kind::Exception:
+    case Parsed::Kind::NotUnderstood:
       return answer(waiting, parsed, take(parsed.consumed), reply);
   }
   return false;
@@ -313,10 +332,10 @@ bool Line::consumeHead(Waiting& waiting, Reply& reply)
 
 bool Line::answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply)
 {
-  const bool exception = parsed.kind == Parsed::Kind::Exception;
+  const bool exception = parsed.kind != Parsed::Kind::Reply;
   // An exception repeats neither address nor count: it could as well be the late answer to a lost request of this
   // function. Refused here, for "never repeated" must not come from another request's reply.
-  if (exception && bars_.mayBeLate(protocol_.shapeOfReply(parsed.station, parsed.pdu), clock_.now()))
+  if (exception && bars_.mayBeLate(protocol_.shapeOfReply(parsed), clock_.now()))
   {
     ++counters_.late_replies;
     observe(FrameEvent::Kind::Late, raw, clock_.now());
@@ -328,16 +347,14 @@ bool Line::answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Repl
 
 void Line::accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply)
 {
-  const bool exception = parsed.kind == Parsed::Kind::Exception;
-  const bool unanswered = parsed.error_id == ERROR_TIMEOUT;
   echo_.answered(damaged_.empty());
   reportDamaged();
   noteAnswer(parsed, raw);
-  if (!exception && protocol_.isLoopback(waiting.request) && mayAsk(waiting.request))
+  if (parsed.kind == Parsed::Kind::Reply && protocol_.isLoopback(waiting.request) && mayAsk(waiting.request))
   {
     bars_.lift(parsed.station, waiting.sent_at);
   }
-  reply.outcome = exception ? (unanswered ? Outcome::Timeout : Outcome::Exception) : Outcome::Ok;
+  reply.outcome = outcomeOf(parsed);
   reply.pdu = parsed.pdu;
   reply.error_id = parsed.error_id;
   reply.finished_at = last_byte_at_;
@@ -346,11 +363,20 @@ void Line::accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw
 
 void Line::noteAnswer(const Parsed& parsed, const Bytes& raw)
 {
-  const bool exception = parsed.kind == Parsed::Kind::Exception;
-  observe(exception ? FrameEvent::Kind::Exception : FrameEvent::Kind::Reply, raw, last_byte_at_);
-  ++counters_.replies;
-  counters_.exceptions += exception ? 1 : 0;
-  counters_.timeouts += parsed.error_id == ERROR_TIMEOUT ? 1 : 0;
+  const bool normal = parsed.kind == Parsed::Kind::Reply;
+  observe(normal ? FrameEvent::Kind::Reply : FrameEvent::Kind::Exception, raw, last_byte_at_);
+  switch (outcomeOf(parsed))
+  {
+    case Outcome::Damaged:
+      ++counters_.corrupt_replies;
+      return;
+    case Outcome::Timeout:
+      ++counters_.timeouts;
+      return;
+    default:
+      ++counters_.replies;
+      counters_.exceptions += normal ? 0 : 1;
+  }
 }
 
 void Line::giveUp(Waiting& waiting, Reply& reply)
@@ -373,7 +399,7 @@ void Line::giveUp(Waiting& waiting, Reply& reply)
   ++(damaged ? counters_.corrupt_replies : counters_.timeouts);
   reply.outcome = damaged ? Outcome::Damaged : Outcome::Timeout;
   reply.error_id = damaged ? ERROR_DAMAGED : ERROR_TIMEOUT;
-  bars_.add(protocol_.shape(waiting.request), waiting.request.station, waiting.request_end, reply.finished_at);
+  bars_.add(waiting.shape, waiting.request.station, waiting.request_end, reply.finished_at);
 }
 
 void Line::lose(Reply& reply)
@@ -418,11 +444,13 @@ void Line::consumeIdleHead()
     case Parsed::Kind::Garbage:
       skip(parsed.consumed);
       return;
+    case Parsed::Kind::Late:
     case Parsed::Kind::Foreign:
       noteUnasked(parsed, take(parsed.consumed));
       return;
     case Parsed::Kind::Reply:
     case Parsed::Kind::Exception:
+    case Parsed::Kind::NotUnderstood:
       noteAnswer(parsed, take(parsed.consumed));
       return;
   }
@@ -436,14 +464,16 @@ void Line::stripEcho()
 /// True if \p parsed is the late reply to a lost request, false if nobody here has asked for it.
 bool Line::noteUnasked(const Parsed& parsed, const Bytes& raw)
 {
-  const auto late = bars_.take(protocol_.shapeOfReply(parsed.station, parsed.pdu), clock_.now());
-  observe(late ? FrameEvent::Kind::Late : FrameEvent::Kind::Foreign, raw, last_byte_at_);
-  ++(late ? counters_.late_replies : counters_.foreign_frames);
-  if (late && late->request_end)
+  const auto late = bars_.take(protocol_.shapeOfReply(parsed), clock_.now());
+  const bool own = late || parsed.kind == Parsed::Kind::Late;
+  observe(own ? FrameEvent::Kind::Late : FrameEvent::Kind::Foreign, raw, last_byte_at_);
+  ++(own ? counters_.late_replies : counters_.foreign_frames);
+  // No longer time-out makes a drive answer that a gateway has given up.
+  if (late && late->request_end && parsed.error_id != ERROR_TIMEOUT)
   {
     late_.push_back({ parsed.station, head_at_ - *late->request_end });
   }
-  return late.has_value();
+  return own;
 }
 
 void Line::observe(FrameEvent::Kind kind, const Bytes& bytes, TimePoint time)
@@ -477,11 +507,6 @@ Bytes Line::take(std::size_t count)
   buffer_.erase(buffer_.begin(), end);
   head_at_ = last_byte_at_;
   return bytes;
-}
-
-Duration Line::gap() const
-{
-  return timing_.gap(protocol_.gapCharacters());
 }
 }  // namespace wire
 }  // namespace inverter_bus

@@ -80,6 +80,11 @@ std::size_t bytesAsked(const Bytes& pdu)
   return layoutOf(pdu) == Layout::ReadBits ? (count + 7) / 8 : READ_REGISTERS_WIDTH * count;
 }
 
+bool isException(const Bytes& pdu)
+{
+  return pdu.size() == 2 && (pdu[0] & EXCEPTION_FLAG) != 0;
+}
+
 /// \p overhead and the bytes counted at \p position, or the overhead alone as long as the count has not arrived.
 std::size_t countedLength(const std::uint8_t* data, std::size_t size, std::size_t position, std::size_t overhead)
 {
@@ -139,10 +144,20 @@ std::size_t replyLength(const Request& request)
   return 0;
 }
 
+std::uint16_t errorIdOf(const Bytes& pdu)
+{
+  if (!isException(pdu))
+  {
+    return 0;
+  }
+  const bool gateway = pdu[1] == GATEWAY_PATH_UNAVAILABLE || pdu[1] == GATEWAY_TARGET_FAILED;
+  return gateway ? ERROR_TIMEOUT : static_cast<std::uint16_t>(pdu[0] << 8 | pdu[1]);
+}
+
 Bytes replyShape(std::uint8_t station, const Bytes& pdu)
 {
   Bytes shape{ station };
-  if (pdu.size() == 2 && (pdu[0] & EXCEPTION_FLAG) != 0)
+  if (isException(pdu))
   {
     shape.push_back(static_cast<std::uint8_t>(pdu[0] & ~EXCEPTION_FLAG));
     return shape;

@@ -35,6 +35,10 @@ Bytes replyHead(const Request& request);
 /// Length of the whole normal reply, CRC included; 0 where the function is unknown.
 std::size_t replyLength(const Request& request);
 
+/// The contract's error id of the exception \p pdu; 0 if it is none. A gateway's exceptions 0AH and 0BH mean that the
+/// drive has not answered it: no reply in time, not a refusal.
+std::uint16_t errorIdOf(const Bytes& pdu);
+
 /// The shape (Protocol::shapeOfReply) that a reply from \p station answers to, as bytes; empty if it is no reply.
 Bytes replyShape(std::uint8_t station, const Bytes& pdu);
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "inverter_bus/wire/protocol.h"
+#include "modbus_awaited_reply.h"
 #include "modbus_frames.h"
 
 namespace inverter_bus
@@ -12,71 +13,8 @@ namespace wire
 {
 namespace
 {
-/// What bytes at some place are to the awaited reply.
-enum class Match
-{
-  None,
-  /// The station's number only: no more than a hint.
-  Perhaps,
-  /// Station, function and all other bytes that are known beforehand fit so far.
-  Begun,
-  Reply,
-  Exception
-};
-
-/// The reply that a request waits for.
-class AwaitedReply
-{
-public:
-  explicit AwaitedReply(const Request& request)
-    : head_(modbus::replyHead(request)), length_(modbus::replyLength(request))
-  {
-  }
-
-  Match match(const std::uint8_t* data, std::size_t size) const
-  {
-    if (data[0] != head_[0] || head_.size() < 2)
-    {
-      return Match::None;
-    }
-    if (size == 1)
-    {
-      return Match::Perhaps;
-    }
-    const bool exception = data[1] == (head_[1] | modbus::EXCEPTION_FLAG);
-    return exception ? complete(data, size, modbus::EXCEPTION_LENGTH, Match::Exception) : matchNormal(data, size);
-  }
-
-  std::size_t length(Match match) const
-  {
-    return match == Match::Exception ? modbus::EXCEPTION_LENGTH : length_;
-  }
-
-private:
-  Match matchNormal(const std::uint8_t* data, std::size_t size) const
-  {
-    const std::size_t known = std::min(size, head_.size());
-    const bool fits = length_ != 0 && std::equal(data, data + known, head_.begin());
-    return fits ? complete(data, size, length_, Match::Reply) : Match::None;
-  }
-
-  static Match complete(const std::uint8_t* data, std::size_t size, std::size_t length, Match kind)
-  {
-    if (size < length)
-    {
-      return Match::Begun;
-    }
-    return modbus::crcFits(data, length) ? kind : Match::None;
-  }
-
-  Bytes head_;
-  std::size_t length_;
-};
-
-bool isWhole(Match match)
-{
-  return match == Match::Reply || match == Match::Exception;
-}
+using modbus::AwaitedReply;
+using modbus::Match;
 
 Parsed incomplete(bool own)
 {
@@ -100,23 +38,14 @@ Parsed wholeFrame(Parsed::Kind kind, const std::uint8_t* data, std::size_t lengt
   parsed.consumed = length;
   parsed.station = data[0];
   parsed.pdu.assign(data + 1, data + length - modbus::CRC_LENGTH);
+  parsed.error_id = modbus::errorIdOf(parsed.pdu);
   return parsed;
-}
-
-/// A gateway's exceptions mean that the drive has not answered it: no reply in time, not a refusal.
-std::uint16_t errorIdOf(const Bytes& exception)
-{
-  const std::uint8_t code = exception[1];
-  const bool gateway = code == modbus::GATEWAY_PATH_UNAVAILABLE || code == modbus::GATEWAY_TARGET_FAILED;
-  return gateway ? ERROR_TIMEOUT : static_cast<std::uint16_t>(exception[0] << 8 | code);
 }
 
 Parsed ownFrame(Match match, const std::uint8_t* data, std::size_t length)
 {
   const bool exception = match == Match::Exception;
-  Parsed parsed = wholeFrame(exception ? Parsed::Kind::Exception : Parsed::Kind::Reply, data, length);
-  parsed.error_id = exception ? errorIdOf(parsed.pdu) : std::uint16_t{ 0 };
-  return parsed;
+  return wholeFrame(exception ? Parsed::Kind::Exception : Parsed::Kind::Reply, data, length);
 }
 
 /// First place behind the head where the awaited reply stands complete; \p size if nowhere. It is looked for although
@@ -205,7 +134,7 @@ public:
       return incomplete(false);
     }
     const bool awaiting = request != nullptr && !request->broadcast;
-    return awaiting ? parseAwaiting(AwaitedReply(*request), data, size) : parseForeign(data, size);
+    return awaiting ? parseAwaiting(AwaitedReply(*request, modbus::CRC_LENGTH), data, size) : parseForeign(data, size);
   }
 
   std::size_t requestLength(const Request& request) const override
@@ -223,9 +152,9 @@ public:
     return toShape(modbus::replyHead(request));
   }
 
-  std::string shapeOfReply(std::uint8_t station, const Bytes& pdu) const override
+  std::string shapeOfReply(const Parsed& reply) const override
   {
-    return toShape(modbus::replyShape(station, pdu));
+    return toShape(modbus::replyShape(reply.station, reply.pdu));
   }
 
   bool isLoopback(const Request& request) const override

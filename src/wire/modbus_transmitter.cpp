@@ -8,7 +8,7 @@
 
 #include <cerrno>
 
-#include "poll_tty.h"
+#include "poll_descriptor.h"
 #include "transmitter.h"
 
 namespace inverter_bus

@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <thread>
 
-#include "poll_tty.h"
+#include "poll_descriptor.h"
 #include "transmitter.h"
 
 namespace inverter_bus

@@ -14,7 +14,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "poll_tty.h"
+#include "poll_descriptor.h"
 #include "transmitter.h"
 #include "tty_setup.h"
 
@@ -107,8 +107,8 @@ public:
   {
     while (port_.is_open())
     {
-      const TtyState state = pollTty(port_.native_handle(), POLLIN, deadline);
-      if (state == TtyState::Silent)
+      const DescriptorState state = pollDescriptor(port_.native_handle(), POLLIN, deadline);
+      if (state == DescriptorState::Silent)
       {
         return ReceiveResult::Silence;
       }
@@ -119,7 +119,7 @@ public:
         return ReceiveResult::Data;
       }
       const bool try_again = count < 0 && (errno == EAGAIN || errno == EINTR);
-      if (state == TtyState::HungUp || !try_again)
+      if (state == DescriptorState::HungUp || !try_again)
       {
         return ReceiveResult::Gone;
       }

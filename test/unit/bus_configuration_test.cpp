@@ -226,6 +226,7 @@ TEST_P(RefusalTest, namesKeyValuePlaceAndWhatIsAllowed)
 
 const std::string ALLOWED = "allowed:";
 const std::string BELT = "~scan_list[0] (belt)";
+const std::string FAN = "scan_list: [{name: fan, node: 1, drive: omron_3g3je}]\n";
 
 INSTANTIATE_TEST_SUITE_P(
     Bus, RefusalTest,
@@ -233,9 +234,53 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "unknownKey", "baudrate: 9600\n" + ONE, { "~:", "'baudrate'", "9600", "baud_rate", ALLOWED } },
         Wrong{ "emptyPort", "port: ''\n" + ONE, { "'port'", "''", ALLOWED } },
         Wrong{ "portNumber", "port: 5\n" + ONE, { "'port'", "5", "no text", ALLOWED } },
-        Wrong{ "gatewayPort", "port: tcp://gateway\n" + ONE, { "'port'", "tcp://gateway", "serial ports", ALLOWED } },
-        Wrong{ "tunnelPort", "port: rtu+tcp://a:1\n" + ONE, { "'port'", "serial ports", ALLOWED } },
-        Wrong{ "compowayF", "protocol: compoway_f\n" + ONE, { "'protocol'", "compoway_f", "allowed: modbus_rtu" } },
+        Wrong{
+            "unknownNetwork", "port: udp://gateway\n" + ONE, { "'port'", "udp://gateway", "unknown kind", ALLOWED } },
+        Wrong{ "tunnelWithoutPort", "port: rtu+tcp://gateway\n" + ONE, { "'port'", "rtu+tcp://gateway", ALLOWED } },
+        Wrong{ "gatewayWithoutHost", "port: 'tcp://:502'\n" + ONE, { "'port'", "tcp://:502", ALLOWED } },
+        Wrong{ "gatewayPortNumber", "port: 'tcp://plc:70000'\n" + ONE, { "'port'", "tcp://plc:70000", ALLOWED } },
+        Wrong{ "compowayFOverTcp",
+               "protocol: compoway_f\nport: tcp://gateway\n" + FAN,
+               { "'protocol'", "compoway_f", "tcp://gateway", "modbus_rtu" } },
+        Wrong{ "compowayFOverATunnel",
+               "protocol: compoway_f\nport: rtu+tcp://gateway:4001\n" + FAN,
+               { "'protocol'", "compoway_f", "rtu+tcp://gateway:4001" } },
+        Wrong{ "modbusDriveOnCompowayF",
+               "protocol: compoway_f\n" + ONE,
+               { BELT, "'drive'", "omron_mx2", "compoway_f", ALLOWED } },
+        Wrong{ "compowayFDriveOnModbus", FAN, { "(fan)", "'drive'", "omron_3g3je", "modbus_rtu", ALLOWED } },
+        Wrong{ "modbusKeyOfACompowayFDrive",
+               "protocol: compoway_f\nscan_list: [{name: fan, node: 0, drive: omron_3g3je, block_read: [1, 2, 3, 4, "
+               "5]}]\n",
+               { "(fan)", "'block_read'", "Modbus", ALLOWED } },
+        Wrong{ "modbusOverrideOfACompowayFDrive",
+               "protocol: compoway_f\nscan_list: [{name: fan, node: 1, drive: omron_3g3je, overrides: {limits: "
+               "{functions: "
+               "[3]}}}]\n",
+               { "(fan)", "limits.functions", ALLOWED } },
+        Wrong{ "stationHundredOfA3G3JE",
+               "protocol: compoway_f\nscan_list: [{name: fan, node: 100, drive: omron_3g3je}]\n",
+               { "(fan)", "'node'", "100", "from 0 to 99" } },
+        Wrong{
+            "runWithoutStopOfA3G3JE",
+            "protocol: compoway_f\nscan_list: [{name: fan, node: 1, drive: omron_3g3je, overrides: {operation_codes: "
+            "{run_forward: '1101'}}}]\n",
+            { "(fan)", "'overrides'", "run without stop", ALLOWED } },
+        Wrong{
+            "operationCodeWithoutQuotes",
+            "protocol: compoway_f\nscan_list: [{name: fan, node: 1, drive: omron_3g3je, overrides: {operation_codes: "
+            "{stop: 0100}}}]\n",
+            { "(fan)", "operation_codes.stop", "four hexadecimal digits in quotes" } },
+        Wrong{ "stationThirtyTwoOfA7200MA",
+               "baud_rate: 9600\nparity: even\nscan_list: [{name: fan, node: 32, drive: teco_7200ma}]\n",
+               { "(fan)", "'node'", "32", "from 1 to 31" } },
+        Wrong{ "oneStopBitWithoutParityOfA7200MA",
+               "baud_rate: 9600\nscan_list: [{name: fan, node: 3, drive: teco_7200ma}]\n",
+               { "'stop_bits'", "8N1", "fan", "8E1, 8N2, 8O1" } },
+        Wrong{ "seventeenRegistersOfA7200MA",
+               "baud_rate: 9600\nparity: even\nscan_list: [{name: fan, node: 3, drive: teco_7200ma, overrides: "
+               "{limits: {read_registers: 170}}}]\n",
+               { "(fan)", "limits.read_registers", "170", ALLOWED } },
         Wrong{ "unknownProtocol", "protocol: modbus\n" + ONE, { "'protocol'", "'modbus'", "allowed: modbus_rtu" } },
         Wrong{ "unknownBaudRate", "baud_rate: 19201\n" + ONE, { "'baud_rate'", "19201", "19200", ALLOWED } },
         Wrong{ "baudRateText", "baud_rate: '9600'\n" + ONE, { "'baud_rate'", "'9600'", ALLOWED } },

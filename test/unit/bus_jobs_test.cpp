@@ -451,7 +451,7 @@ TEST_F(Mx2Parameters, lostWriteFails)
 TEST(WriteParameterJob, writeThatReachesTheEepromSaysSo)
 {
   drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());
-  profile.writes_reach_eeprom = true;
+  profile.writes = drive::Writes::Eeprom;
   const drive::Drive drive(profile);
   std::set<std::string> ram_changes;
   WriteParameterJob job(drive, 1, *drive.findParameter("F002", true), 1000, true, ram_changes);

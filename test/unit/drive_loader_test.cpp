@@ -171,7 +171,7 @@ const Mistake MISTAKES[] = {
   { "NothingToAccept", "faults:", "self_restart: [{parameter: P01, accept: []}]\nfaults:", "self_restart[0].accept", "empty list", 0 },
   { "UnknownTimeOutParameter", "faults:", "communication_loss: {timeout_parameter: A009}\nfaults:", "communication_loss.timeout_parameter", "value 'A009'", 0 },
   { "TimeOutWithoutSeconds", "faults:", "communication_loss: {timeout_parameter: P02}\nfaults:", "communication_loss.timeout_parameter", "allowed: s", 0 },
-  { "UnknownLossAction", "faults:", "communication_loss: {drive_loss_action: explode}\nfaults:", "communication_loss.drive_loss_action", "runs_on, decelerate, coast, trip", 0 },
+  { "UnknownLossAction", "faults:", "drive_loss_action: explode\nfaults:", "drive_loss_action", "runs_on, decelerate, coast, trip", 0 },
   { "UnknownWriteMode", "faults:", "writes: flash\nfaults:", "writes", "allowed: ram, eeprom", 0 },
   { "NameWithABlank", "  run: {coil: 1}", "  run: {coil: 1, unconfirmed: run coil}", "points.run.unconfirmed", "a name of letters", 0 },
   { "NegativeTime", "faults:", "timing: {reply_delay: -0.1}\nfaults:", "timing.reply_delay", "from 0", 0 },

@@ -65,7 +65,7 @@ TEST(DriveShippedProfiles, TheMx2HasTheLineOfItsManual)
   EXPECT_EQ(profile.read_registers, 16U);
   EXPECT_EQ(profile.read_coils, 32U);
   EXPECT_THAT(profile.functions, Contains(0x17));
-  EXPECT_FALSE(profile.writes_reach_eeprom);
+  EXPECT_EQ(profile.writes, Writes::Ram);
   EXPECT_TRUE(profile.broadcast_stop);
   EXPECT_DOUBLE_EQ(profile.broadcast_turnaround, 0.02);
   EXPECT_THAT(profile.unconfirmed, IsEmpty());

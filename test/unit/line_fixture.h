@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fake_port.h"
@@ -17,11 +18,13 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// A Modbus line at 19200 8N1 on virtual time. A character takes 521 us, the gap 1.8 ms, a read request 4.2 ms.
+/// A line at 19200 8N1 on virtual time, Modbus RTU unless told otherwise. A character takes 521 us, the gap 1.8 ms, a
+/// read request 4.2 ms.
 class LineFixture : public testing::Test
 {
 protected:
-  LineFixture()
+  explicit LineFixture(std::unique_ptr<Protocol> protocol = makeModbusRtu(), LineTiming timing = { 19200, 10 })
+    : protocol_(std::move(protocol)), timing_(timing)
   {
     std::string error;
     line_.open(error);
@@ -86,8 +89,8 @@ protected:
 
   VirtualClock clock_;
   FakePort port_{ clock_ };
-  const std::unique_ptr<Protocol> protocol_ = makeModbusRtu();
-  const LineTiming timing_{ 19200, 10 };
+  const std::unique_ptr<Protocol> protocol_;
+  const LineTiming timing_;
   Line line_{ port_, *protocol_, clock_, timing_ };
   std::vector<FrameEvent> events_;
   TimePoint start_ = clock_.now();

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "inverter_bus/simulation/compoway_frame.h"
 #include "inverter_bus/simulation/modbus_frame.h"
 #include "inverter_bus/simulation/simulated_bus.h"
 
@@ -43,6 +44,15 @@ public:
       return toHex(reply);
     }
     return toHex(reply);
+  }
+
+  /// CompoWay/F: packs the body of a request. @return the body of the reply, or what came instead as hexadecimal text
+  std::string askBody(const std::string& body)
+  {
+    const std::string reply = askRaw(toHex(compowayFrame(body)));
+    const std::optional<Bytes> frame = findCompowayFrame(*fromHex(reply));
+    const bool good = frame && compowayBccFits(*frame) && toHex(*frame) == reply;
+    return good ? compowayBody(*frame) : reply;
   }
 
   /// @return all that comes out until nothing is under way any more

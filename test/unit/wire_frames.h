@@ -25,6 +25,12 @@ inline Bytes hex(const std::string& text)
   return bytes;
 }
 
+/// The characters of \p text.
+inline Bytes ascii(const std::string& text)
+{
+  return Bytes(text.begin(), text.end());
+}
+
 inline Bytes operator+(Bytes left, const Bytes& right)
 {
   left.insert(left.end(), right.begin(), right.end());

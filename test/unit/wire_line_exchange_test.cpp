@@ -56,14 +56,21 @@ TEST_F(LineExchange, anExceptionEndsIt)
   EXPECT_TRUE(mayAsk(READ));
 }
 
-TEST_F(LineExchange, aGatewaysExceptionIsATimeout)
+TEST_F(LineExchange, aGatewaysExceptionIsATimeoutThatEndsItAtOnce)
 {
-  answerNext("01 83 0B");
-  const Reply reply = ask(READ);
-  EXPECT_EQ(Outcome::Timeout, reply.outcome);
-  EXPECT_EQ(ERROR_TIMEOUT, reply.error_id);
-  EXPECT_EQ(1u, line_.counters().timeouts);
-  EXPECT_TRUE(mayAsk(READ)) << "the gateway has answered: no reply is owed";
+  for (const char* exception : { "01 83 0A", "01 83 0B" })
+  {
+    answerNext(exception, 20);
+    const Reply reply = ask(READ);
+    EXPECT_EQ(Outcome::Timeout, reply.outcome);
+    EXPECT_EQ(ERROR_TIMEOUT, reply.error_id);
+    EXPECT_EQ(reply.sent_at + ms(20), reply.finished_at);
+    EXPECT_TRUE(mayAsk(READ)) << "the gateway has answered: no reply is owed";
+  }
+  EXPECT_EQ("RERE", seen());
+  EXPECT_EQ(2u, line_.counters().timeouts);
+  EXPECT_EQ(0u, line_.counters().replies) << "the drive has not answered";
+  EXPECT_EQ(0u, line_.counters().exceptions);
 }
 
 TEST_F(LineExchange, silenceIsATimeoutAfterTheComputedTime)
@@ -257,6 +264,85 @@ TEST_F(LineExchange, aBroadcastKeepsTheGapAtLeast)
 {
   const Reply reply = line_.exchange(requestOf(withCrc("00 06 FA 00 C0 00")), Duration::zero());
   EXPECT_EQ(reply.sent_at + timing_.characters(8) + timing_.gap(3.5), line_.readyAt());
+}
+
+class LineQuietBefore : public LineFixture
+{
+protected:
+  LineQuietBefore()
+  {
+    request_.quiet_before = milliseconds(7);
+  }
+
+  Request request_ = requestOf(withCrc(READ));
+};
+
+TEST_F(LineQuietBefore, countsFromTheLastByteReceived)
+{
+  answerNext(REPLY);
+  const Reply first = ask(READ);
+  EXPECT_TRUE(line_.settle());
+  EXPECT_EQ(first.finished_at + milliseconds(7), line_.exchange(request_).sent_at);
+}
+
+TEST_F(LineQuietBefore, countsFromTheLastByteSent)
+{
+  const Reply first = line_.exchange(requestOf(withCrc("00 06 FA 00 C0 00")));
+  EXPECT_EQ(first.sent_at + timing_.characters(8) + milliseconds(7), line_.exchange(request_).sent_at);
+}
+
+TEST_F(LineQuietBefore, countsFromTheOpening)
+{
+  EXPECT_EQ(start_ + milliseconds(7), line_.exchange(request_).sent_at);
+}
+
+TEST_F(LineQuietBefore, isLongOverOnAQuietLine)
+{
+  clock_.advance(milliseconds(20));
+  const TimePoint now = clock_.now();
+  EXPECT_EQ(now, line_.exchange(request_).sent_at);
+}
+
+TEST_F(LineQuietBefore, neverShortensTheGapOrTheTurnaround)
+{
+  request_.quiet_before = std::chrono::microseconds(10);
+  const Reply first = line_.exchange(requestOf(withCrc("00 06 FA 00 C0 00")), milliseconds(20));
+  EXPECT_EQ(first.sent_at + timing_.characters(8) + milliseconds(20), line_.exchange(request_).sent_at);
+}
+
+TEST_F(LineQuietBefore, beginsAnewWithWhatArrivesMeanwhile)
+{
+  answerNext(REPLY);
+  ask(READ);
+  port_.deliver(milliseconds(6), withCrc("02 03 02 00 00"));
+  const TimePoint foreign_at = clock_.now() + milliseconds(6);
+  EXPECT_EQ(foreign_at + milliseconds(7), line_.exchange(request_).sent_at);
+  EXPECT_EQ("RAFR", seen());
+}
+
+TEST_F(LineQuietBefore, isBoundedUnderBabble)
+{
+  for (int i = 0; i < 500; ++i)
+  {
+    port_.deliver(milliseconds(i), hex("55"));
+  }
+  EXPECT_LE(line_.exchange(request_).sent_at - start_, milliseconds(107));
+}
+
+TEST_F(LineQuietBefore, noticesThatThePortIsGone)
+{
+  port_.unplug();
+  EXPECT_EQ(Outcome::PortLost, line_.exchange(request_).outcome);
+  EXPECT_EQ(0u, line_.counters().requests);
+}
+
+TEST_F(LineQuietBefore, isPartOfTheCost)
+{
+  const Duration rest = timing_.characters(8) + timing_.gap(3.5);
+  EXPECT_EQ(milliseconds(7) + rest + milliseconds(5) + timing_.characters(9), line_.cost(request_, milliseconds(5)));
+  EXPECT_EQ(milliseconds(7) + rest + milliseconds(100), line_.costUnanswered(request_));
+  request_.quiet_before = std::chrono::microseconds(10);
+  EXPECT_EQ(timing_.gap(3.5) + rest + milliseconds(100), line_.costUnanswered(request_)) << "the gap is longer";
 }
 
 class LineSilentRequest : public LineFixture

@@ -209,7 +209,7 @@ TEST_P(GoldenFrame, answersTheShapeOfItsRequest)
     return;
   }
   const std::string shape = protocol_->shape(request_);
-  const std::string answered = protocol_->shapeOfReply(reply_[0], Bytes(reply_.begin() + 1, reply_.end() - 2));
+  const std::string answered = protocol_->shapeOfReply(parse(reply_));
   ASSERT_FALSE(answered.empty());
   EXPECT_EQ((reply_[1] & 0x80) != 0 ? shape.substr(0, 2) : shape, answered);
 }
@@ -266,8 +266,8 @@ TEST_P(MismatchedReply, hasAnotherShape)
 {
   const std::unique_ptr<Protocol> protocol = makeModbusRtu();
   const Request request = requestOf(withCrc(GetParam().request));
-  const Bytes reply = hex(GetParam().reply);
-  const std::string answered = protocol->shapeOfReply(reply[0], Bytes(reply.begin() + 1, reply.end()));
+  const Bytes reply = withCrc(GetParam().reply);
+  const std::string answered = protocol->shapeOfReply(protocol->parse(reply.data(), reply.size(), &request));
   const std::string shape = protocol->shape(request);
   EXPECT_NE(shape, answered);
   EXPECT_NE(shape.substr(0, answered.size()), answered);
@@ -381,11 +381,14 @@ TEST_F(ModbusRtuTest, unknownAndMalformedRequestsHaveNoReply)
 
 TEST_F(ModbusRtuTest, aRequestOnTheWireIsNoAnswerToAShape)
 {
-  const Bytes request = hex("03 0A 00 00 05");
-  EXPECT_EQ("", protocol_->shapeOfReply(1, request));
-  EXPECT_EQ("", protocol_->shapeOfReply(1, hex("10 00 00 00 01 02 00 01")));
-  EXPECT_EQ("", protocol_->shapeOfReply(1, hex("2B 0E")));
-  EXPECT_EQ("", protocol_->shapeOfReply(1, Bytes()));
+  for (const char* pdu : { "03 0A 00 00 05", "10 00 00 00 01 02 00 01", "2B 0E", "" })
+  {
+    Parsed frame;
+    frame.kind = Kind::Foreign;
+    frame.station = 1;
+    frame.pdu = hex(pdu);
+    EXPECT_EQ("", protocol_->shapeOfReply(frame)) << pdu;
+  }
 }
 
 TEST_F(ModbusRtuTest, requestsThatReadEquallyMuchHaveEqualShapes)

@@ -5,12 +5,15 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "inverter_bus/drive/drive.h"
+#include "inverter_bus/wire/line.h"
 #include "inverter_bus/wire/serial_port.h"
+#include "inverter_bus/wire/tcp_port.h"
 
 namespace inverter_bus
 {
@@ -66,7 +69,12 @@ struct BusConfig
 {
   std::string port = "/dev/ttyUSB0";
   std::string protocol = "modbus_rtu";
+  /// Of the port, or of the line behind a gateway.
   wire::SerialSettings serial;
+  /// tcp:// and rtu+tcp://: where the gateway is.
+  std::optional<wire::TcpAddress> gateway;
+  /// tcp://: the gateway speaks Modbus TCP; otherwise it passes RTU frames on as they are.
+  bool modbus_tcp = false;
   double interval = 0.0;  ///< [s] 0-655.35
   double response_timeout = 0.1;
   int retries = 1;
@@ -79,6 +87,11 @@ struct BusConfig
   /// In node order.
   std::vector<InverterConfig> inverters;
 };
+
+/// Framing and port that a judged configuration asks for.
+std::unique_ptr<wire::Protocol> makeProtocol(const BusConfig& config);
+std::unique_ptr<wire::Port> makePort(const BusConfig& config);
+wire::LineTiming makeTiming(const BusConfig& config);
 
 /// A judged configuration and the drives that belong to it, in the same order.
 struct Configuration

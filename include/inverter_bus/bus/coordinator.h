@@ -155,6 +155,9 @@ private:
   void finishStopCalls(TimePoint now);
   bool broadcastIsSafe() const;
   std::string stopProblem(const Inverter& inverter) const;
+  std::string refusalText(const Inverter& inverter, std::uint16_t error_id) const;
+  void refuseParameter(const Inverter& inverter, const std::string& name, const AnswerCallback& callback);
+  bool refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback);
 
   // jobs
   std::uint16_t judgeWrite(const Inverter& inverter, const std::string& name, double value, bool persist,
@@ -179,8 +182,9 @@ private:
   Duration longestReplyDelay() const;
   Pick pickShutdown(TimePoint now);
   std::optional<Current> compose(TimePoint now, const Pick& pick);
-  std::optional<Current> composeVelocity(const Pick& pick);
-  std::optional<Current> composeJob(const Pick& pick);
+  Current composeRefresh(TimePoint now, const Pick& pick);
+  std::optional<Current> composeVelocity(TimePoint now, const Pick& pick);
+  std::optional<Current> composeJob(TimePoint now, const Pick& pick);
   Current composeProbe(const Pick& pick);
   bool makeSafe(TimePoint now, Current& current);
   Duration probeTimeout(const Inverter& inverter) const;
@@ -189,6 +193,10 @@ private:
   void finishExchange(const Current& current, const wire::Reply& reply, bool more);
   void doneStop(const Current& current, const wire::Reply& reply);
   void doneVelocity(const Current& current, const wire::Reply& reply);
+  void countWear(const Current& current);
+  bool dropBlock(const Current& current, const wire::Reply& reply);
+  void configureBlock(TimePoint now, Inverter& inverter);
+  void doneStep(TimePoint now, const Current& current);
   void finishVelocity(const Current& current, const wire::Reply& reply);
   void doneJob(const Current& current, const wire::Reply& reply);
   void doneRefresh(const Current& current, const wire::Reply& reply);

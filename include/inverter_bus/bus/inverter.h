@@ -103,6 +103,26 @@ public:
   void expectSilence(TimePoint until);
 
   wire::Request prepared(wire::Request request) const;
+  /// Identity and what the drive must be told are settled before its first status.
+  bool connectDue(TimePoint now) const;
+  /// After each exchange for its settings.
+  void settled(TimePoint now, const wire::Reply& reply);
+  /// The drive has selected exactly the words that are configured.
+  bool blockFits() const;
+  /// Parameters and values that make the block read and write fit, empty where nothing is to be written (any more).
+  std::vector<std::pair<std::string, std::uint32_t>> blockToConfigure();
+  /// The drive takes no block write: direct reads and single writes from now on.
+  void dropBlock(const std::string& why);
+  /// An exchange ended: \p shows_run if it was a status read with our RUN in force.
+  void noteExchange(TimePoint now, bool shows_run);
+  /// A refresh may repeat the confirmed command words (rule 4.1).
+  bool mayRepeatWords(TimePoint now) const;
+  /// The motor may turn, as far as anybody can tell.
+  bool mayRun() const;
+  /// Why the drive gets no command but a stop; empty: it does.
+  std::string wrongDrive() const;
+  /// The drive's EEPROM has been written once more by this node.
+  void noteEepromWrite();
   /// The next probe() is a loop-back, if the drive's profile has one.
   bool probesByLoopback() const;
   /// The question that shows whether an offline drive is back.
@@ -127,6 +147,7 @@ public:
 
   bool reset_active = false;
   TimePoint refresh_not_before;
+  TimePoint connect_not_before;
   int refresh_tries = 0;
   int velocity_tries = 0;
   /// Frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
@@ -135,6 +156,11 @@ public:
   unsigned probes = 0;
 
 private:
+  void adoptSettings();
+  bool writesWear() const;
+  std::string blockFinding() const;
+  std::vector<int> wantedWriteCodes() const;
+  void judgeRestart(const drive::Monitor& monitor, Judgement& judgement);
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
@@ -165,6 +191,12 @@ private:
   bool unexpected_motion_ = false;
   bool leftover_judged_ = false;
   bool early_trip_ = false;
+
+  // block read and write
+  std::optional<TimePoint> run_shown_at_;
+  bool block_configured_ = false;
+  std::string block_note_;
+  std::uint64_t eeprom_writes_ = 0;
 };
 }  // namespace bus
 }  // namespace inverter_bus

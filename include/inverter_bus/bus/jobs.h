@@ -7,6 +7,8 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "inverter_bus/bus/scheduler.h"
 #include "inverter_bus/bus/types.h"
@@ -57,7 +59,8 @@ private:
   Answer answer_;
 };
 
-/// Clears a trip. Sends nothing that could start a motor: RUN is read back as off directly before the reset.
+/// Clears a trip. Sends nothing that could start a motor: RUN is read back as off directly before the reset. Where the drive
+/// can't tell, the coordinator has a stop confirmed first.
 class ResetJob : public Job
 {
 public:
@@ -112,7 +115,8 @@ private:
   drive::Parameter parameter_;
 };
 
-/// Writes a parameter; with persist, stores every RAM change of the drive and waits until its EEPROM is done.
+/// Writes a parameter; with persist, stores every RAM change of the drive and waits until its EEPROM is done. Where the
+/// drive takes it in its setup area only, leads it there and back.
 class WriteParameterJob : public Job
 {
 public:
@@ -126,18 +130,43 @@ public:
 private:
   enum class Phase
   {
+    Open,
     Write,
+    Close,
     Store,
     Busy
   };
+  const drive::Sequence* stepsOf(Phase phase) const;
+  Progress afterWrite();
   Progress afterStoreStep();
+  Progress afterSetupStep();
   Progress stored();
+  std::string kept() const;
 
   drive::Parameter parameter_;
   std::uint32_t raw_;
   bool persist_;
   std::set<std::string>& ram_changes_;
-  Phase phase_ = Phase::Write;
+  Phase phase_;
+  std::size_t step_ = 0;
+  /// Why the write failed while the drive is still to be led out of its setup area.
+  std::uint16_t refused_id_ = 0;
+  std::string refused_;
+};
+
+/// Selects the words of the block read and write in the drive (VF-S15: F870-F879, then F899), once.
+class ConfigureBlockJob : public Job
+{
+public:
+  /// \p wanted parameters and raw values, in the order of writing.
+  ConfigureBlockJob(const drive::Drive& drive, std::uint8_t station,
+                    std::vector<std::pair<std::string, std::uint32_t>> wanted);
+  wire::Request next() override;
+  Progress done(const wire::Reply& reply) override;
+  Progress lost(const wire::Reply& reply) override;
+
+private:
+  std::vector<std::pair<std::string, std::uint32_t>> wanted_;
   std::size_t step_ = 0;
 };
 }  // namespace bus

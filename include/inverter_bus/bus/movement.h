@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "inverter_bus/bus/configuration.h"
 #include "inverter_bus/bus/types.h"
@@ -40,6 +41,8 @@ struct Write
 {
   std::string point;
   std::uint32_t raw = 0;
+  /// Further words in the same frame (block write).
+  std::vector<drive::Word> more;
   wire::Request request;
   /// Puts RUN on: from its first byte on the motor counts as running.
   bool starts = false;
@@ -65,6 +68,12 @@ public:
 
   /// The next frame towards the target; nothing: all confirmed.
   std::optional<Write> next() const;
+  /// The same with all command words in one frame, where the drive's block write has exactly these; \p read is what
+  /// comes back in the same exchange (17H), if anything.
+  std::optional<Write> nextCombined(const std::optional<drive::ReadBlock>& read) const;
+  /// The words of the confirmed command while it is in force, for a refresh that repeats them (rule 4.1); empty: none, or
+  /// not all confirmed.
+  std::vector<drive::Word> wordsInForce() const;
   void sent(const Write& write);
   void confirmed(const Write& write, TimePoint now);
   /// No valid answer: nobody knows whether the drive took it.
@@ -91,6 +100,11 @@ public:
 
 private:
   const std::string& sequenceName() const;
+  std::vector<drive::Word> wantedWords() const;
+  bool isConfirmed(const drive::Word& word) const;
+  bool startsWith(const drive::Word& word) const;
+  void sentWord(const drive::Word& word);
+  void confirmedWord(const drive::Word& word, TimePoint now);
 
   const drive::Drive& drive_;
   const InverterConfig& config_;

@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inverter_bus/bus/types.h"
@@ -23,6 +25,16 @@ class Refresh
 {
 public:
   Refresh(const drive::Drive& drive, std::uint8_t station);
+
+  /// Percent of these become A and V; without them such values stay empty.
+  void setRatings(const drive::Ratings& ratings);
+  /// Reads the words that the user chose in one exchange, and beside it only what that read doesn't bring; empty: direct
+  /// reads. A refresh under way starts again if this changes anything.
+  void useBlock(const std::optional<drive::ReadBlock>& block);
+  /// The read of chosen words, while it is in use.
+  const std::optional<drive::ReadBlock>& block() const;
+  /// Titles and values of chosen words that no status field shows.
+  const std::vector<std::pair<std::string, std::string>>& chosenValues() const;
 
   /// The read that is due; starts a new refresh when none is under way.
   const drive::ReadBlock& next(TimePoint now);
@@ -70,7 +82,11 @@ private:
     drive::Monitor values;
   };
   void plan(TimePoint now);
+  void planSlow(TimePoint now);
   void buildBlocks();
+  void takeRunWords(const Block& block, const wire::Reply& reply);
+  bool nothingChosen(const wire::Reply& reply) const;
+  bool dropBlock();
   void planFaultReads();
   bool advance();
   bool postpone();
@@ -91,6 +107,11 @@ private:
   TimePoint stamp_;
   bool has_stamp_ = false;
   bool complete_ = false;
+  drive::Ratings ratings_;
+  std::optional<drive::ReadBlock> block_;
+  std::vector<std::pair<std::string, std::string>> chosen_values_;
+  /// The slow words that decide over safety have come since the last return.
+  bool run_heard_ = false;
 };
 
 /// Splits a read in two at the widest gap between its values; a block of one value stays as it is.

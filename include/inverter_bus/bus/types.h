@@ -31,7 +31,7 @@ constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
 std::string errorText(std::uint16_t error_id);
 
 /// The drive has no such request: Modbus exceptions 01 to 03 (function, address, count) speak of the request itself, later
-/// ones of the moment (busy, locked, running).
+/// ones of the moment (busy, locked, running). CompoWay/F has response codes for both.
 bool isLastingRefusal(const wire::Reply& reply);
 
 enum class StopMode : std::uint8_t
@@ -86,6 +86,8 @@ struct VelocityCommand
 struct InverterStatus
 {
   std::size_t index = 0;
+  /// As the drive names itself; empty: it doesn't.
+  std::string model;
   /// Arrival of the reply; not valid before the first reply.
   TimePoint stamp;
   bool has_stamp = false;

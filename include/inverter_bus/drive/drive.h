@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "inverter_bus/drive/profile.h"
@@ -31,6 +33,7 @@ struct Monitor
   std::optional<bool> overload_warning;
   std::optional<bool> pid_deviation;
   std::optional<bool> faulted;
+  std::optional<bool> restarted;  ///< the drive has forgotten what it was told since the last return
   std::optional<std::uint32_t> raw_status;
   std::optional<std::uint16_t> fault_code;
   std::optional<std::uint32_t> warning_code;
@@ -46,11 +49,17 @@ struct Monitor
 struct ReadBlock
 {
   Space space = Space::Register;
+  std::uint8_t area = 0;      ///< variable type (CompoWay/F)
   std::uint16_t number = 0;   ///< first number as printed in the manual
   std::uint16_t address = 0;  ///< first wire address
   unsigned count = 1;
   std::vector<std::string> fields;
+  /// Printed number of each word where the drive's user chose them (block read); empty: they follow each other. 0: none.
+  std::vector<std::uint16_t> chosen;
 };
+
+/// A point and the raw value that goes there.
+using Word = std::pair<std::string, std::uint32_t>;
 
 /// One entry of the trip memory. Empty optional: the drive doesn't keep it.
 struct FaultRecord
@@ -93,7 +102,30 @@ public:
 
   wire::Request read(std::uint8_t station, const ReadBlock& block) const;
   /// Puts what \p reply (function code first) says into \p monitor. The reply must have been checked against the request.
-  void decode(const ReadBlock& block, const wire::Bytes& reply, Monitor& monitor) const;
+  /// Quantities in percent of a rating that \p ratings doesn't know stay empty.
+  void decode(const ReadBlock& block, const wire::Bytes& reply, Monitor& monitor,
+              const Ratings& ratings = Ratings()) const;
+  /// One read for \p fields, which must lie close enough together.
+  ReadBlock blockOf(const std::vector<std::string>& fields) const;
+  /// The drive can tell whether a RUN of the bus is on, or at least whether the motor runs.
+  bool tellsRun() const;
+
+  // --- block read and write ---------------------------------------------------------------------------------------
+  /// The read of the words that \p codes select, with the status fields that it brings; empty: the drive has none, a code
+  /// is unknown, or none of them selects anything.
+  std::optional<ReadBlock> chosenRead(const std::vector<int>& codes) const;
+  /// Fast or slow reads of the fields that \p block doesn't bring.
+  std::vector<ReadBlock> fastBlocksBeside(const ReadBlock& block) const;
+  std::vector<ReadBlock> slowBlocksBeside(const ReadBlock& block) const;
+  /// True if \p words are exactly the points of the block write.
+  bool fitsBlockWrite(const std::vector<Word>& words) const;
+  /// All command words in one frame.
+  wire::Request writeChosen(std::uint8_t station, const std::vector<Word>& words) const;
+  /// The same, with the reply that read(\p block) would bring (17H).
+  wire::Request writeAndRead(std::uint8_t station, const std::vector<Word>& words, const ReadBlock& block) const;
+  /// Titles and values of the chosen words that no status field shows.
+  std::vector<std::pair<std::string, std::string>> chosenValues(const ReadBlock& block, const wire::Bytes& reply,
+                                                                const Ratings& ratings) const;
   /// True if a status field of this name can be reported by this drive as configured.
   bool reports(const std::string& field) const;
 
@@ -102,6 +134,16 @@ public:
   const Sequence* sequence(const std::string& name) const;
   /// Names to confirm before \p name can be used; empty: usable, or not there at all.
   std::string missingFor(const std::string& name) const;
+  /// A start is armed, but a stop is not: a mistake of whoever armed it.
+  bool runsWithoutStop() const;
+  /// What to do about missingFor(): the names with the places where they are to be found.
+  std::string armingAdvice(const std::string& name) const;
+  /// What is unconfirmed and what to do about it, for /diagnostics; empty: nothing.
+  std::string unconfirmedText() const;
+  /// Request for \p step; \p setpoint in counts for the frequency.
+  wire::Request command(std::uint8_t station, const Step& step, std::uint32_t setpoint = 0) const;
+  /// Writes to this point reach the EEPROM unless the sequence connect could be carried out.
+  bool wears(const std::string& point) const;
   /// Request that writes \p raw to \p point.
   wire::Request write(std::uint8_t station, const std::string& point, std::uint32_t raw) const;
   /// Set-point of \p frequency_hz (unsigned) in counts of the point `frequency`, rounded to nearest.
@@ -139,10 +181,17 @@ public:
   std::optional<wire::Request> readStoreBusy(std::uint8_t station) const;
   bool decodeStoreBusy(const wire::Bytes& reply) const;
 
+  /// CompoWay/F attributes (service 0503); empty on other protocols.
+  std::optional<wire::Request> readAttributes(std::uint8_t station) const;
+  /// The model text in the reply, without padding.
+  std::string decodeModel(const wire::Bytes& reply) const;
+
   /// "exception 21H: value outside the drive's range" in the drive's own words.
   std::string exceptionText(std::uint16_t error_id) const;
 
 private:
+  std::string adviceFor(const std::set<std::string>& marks) const;
+
   Profile profile_;
   std::vector<ReadBlock> fast_blocks_;
   std::vector<ReadBlock> slow_blocks_;

@@ -27,13 +27,46 @@ public:
 enum class Space
 {
   Coil,
-  Register
+  Register,
+  /// CompoWay/F: an element of 32 bits of a variable area (services 0101 and 0102).
+  Variable,
+  /// CompoWay/F: the word of service 0601, operating status in the high byte, related information in the low one.
+  ControllerStatus,
+  /// CompoWay/F: the code of service 3005, command code and related information. Written, never read.
+  Operation
+};
+
+/// What 100 % of a quantity is, where the drive counts in percent.
+enum class Base
+{
+  None,
+  RatedCurrent,
+  RatedVoltage
+};
+
+/// Ratings of one drive in A and V, as read from it or given by the user; empty: not known (yet).
+struct Ratings
+{
+  std::optional<double> current;
+  std::optional<double> voltage;
+};
+
+/// A number with a name: known, or known to be unknown until the user supplies it.
+struct Constant
+{
+  std::optional<double> value;
+  /// Empty, or the name under which it is unconfirmed.
+  std::string unconfirmed;
+  /// Which page of which manual holds it.
+  std::string where;
 };
 
 /// One value inside a drive: where it lies, how many words it has, what one count means.
 struct Item
 {
   Space space = Space::Register;
+  /// Variable type of a CompoWay/F variable (C0, C1, C3).
+  std::uint8_t area = 0;
   /// The number printed in the drive's manual.
   std::uint16_t number = 0;
   /// The number on the wire (number + the profile's offset).
@@ -44,6 +77,8 @@ struct Item
   /// Value of one count in \ref unit.
   double resolution = 1.0;
   std::string unit;
+  /// What 100 % is, where the unit is "%" of a rating and the value is wanted in A or V.
+  Base base = Base::None;
   /// A bit of the register (0-15) where the item is a flag in a word.
   std::optional<unsigned> bit;
   /// Bits of the register that count (others are undefined on this drive).
@@ -52,6 +87,10 @@ struct Item
   std::map<std::uint32_t, int> values;
   /// Empty, or the name under which this item is unconfirmed.
   std::string unconfirmed;
+  /// The item's own mark where a constant's mark stands in \ref unconfirmed.
+  std::string own_mark;
+  /// Nobody knows where it lies: only an override makes it usable (\ref unconfirmed is then never empty).
+  bool missing = false;
 };
 
 /// A place that a command writes (frequency, direction, run, trip_reset, enter, ...).
@@ -59,6 +98,8 @@ struct Point
 {
   std::string name;
   Item item;
+  /// Every write reaches the EEPROM unless the sequence `connect` could be carried out.
+  bool wears = false;
 };
 
 /// One step of a command sequence: write a value to a point.
@@ -69,6 +110,10 @@ struct Step
   std::optional<std::uint32_t> value;
   /// Pause after the step [s].
   double pause = 0.0;
+  /// False: the drive executes it without a reply.
+  bool expects_reply = true;
+  /// Empty, or the name under which its value is unconfirmed.
+  std::string unconfirmed;
 };
 
 /// A command: its steps in the order of sending.
@@ -94,6 +139,8 @@ struct Parameter
   bool read_only = false;
   /// Station number or serial settings: refused unless `persist`, since they would cut the line.
   bool communication = false;
+  /// Written only between the sequences open_setup and close_setup, at standstill.
+  bool setup = false;
 };
 
 /// Reasons of a trip, by code.
@@ -109,11 +156,52 @@ struct FaultHistory
 /// A setting of the drive that is read at connect, and what it should be.
 struct Expectation
 {
+  /// Empty: the model text is compared instead.
   std::string parameter;
+  /// CompoWay/F attributes (service 0503): the model text must begin with this.
+  std::string model;
   /// Values that are fine.
   std::set<std::uint32_t> accept;
   /// What to do when it has another value.
   std::string advice;
+  /// Judged only while a command of ours is in force.
+  bool when_commanded = false;
+};
+
+/// Where a parameter write ends up.
+enum class Writes
+{
+  /// Lost at power-off unless `store` follows.
+  Ram,
+  /// Every write reaches the EEPROM.
+  Eeprom,
+  /// The manual doesn't say.
+  Unknown
+};
+
+/// One selection code of a block read.
+struct BlockCode
+{
+  std::string title;
+  /// What the code selects; empty: nothing.
+  std::optional<Item> item;
+};
+
+/// Several registers of the user's choice in one exchange, and command words beside them (VF-S15: 1875H and 1870H).
+struct Block
+{
+  Item read;
+  /// Parameters that select the words of the read, in their order.
+  std::vector<std::string> read_slots;
+  Item write;
+  /// Parameters that select the words of the write, in their order.
+  std::vector<std::string> write_slots;
+  /// Points in the order of the words, with the code that selects each.
+  std::vector<std::pair<std::string, std::uint32_t>> select;
+  std::map<unsigned, BlockCode> codes;
+  /// Writing this value to this parameter makes changed slots count without a power cycle; empty: none.
+  std::string apply_parameter;
+  std::uint32_t apply_value = 0;
 };
 
 /// What the drive does when the bus falls silent.
@@ -140,7 +228,7 @@ struct Profile
   std::string name;   ///< omron_mx2
   std::string title;  ///< OMRON 3G3MX2-V1 ...
   std::string file;
-  std::string protocol;  ///< modbus_rtu
+  std::string protocol;  ///< modbus_rtu, compoway_f
 
   unsigned first_station = 1;
   unsigned last_station = 247;
@@ -148,14 +236,23 @@ struct Profile
   std::set<unsigned> data_bits;
   std::set<std::string> parities;
   std::set<unsigned> stop_bits;
+  /// Combinations like "8N2" where not every one of the sets above goes with every other; empty: all.
+  std::set<std::string> characters;
 
   /// Printed number of the register with wire address 0: 1 where the manual counts from 1, 0 where it prints addresses.
   unsigned first_register = 0;
+  /// The last two digits of a number count decimally: a read of several registers steps over A to F.
+  bool decimal_numbers = false;
+  /// Word that a read of several registers brings where no register is.
+  std::optional<std::uint16_t> hole;
 
+  /// Modbus function codes, or CompoWay/F services (MRC and SRC).
   std::set<unsigned> functions;
   unsigned read_registers = 1;
   unsigned write_registers = 1;
   unsigned read_coils = 1;
+  /// CompoWay/F: most characters of a frame.
+  unsigned frame = 40;
   /// Numbers (as printed) from..to that the drive answers without a hole, so that reads may span them.
   std::vector<std::pair<unsigned, unsigned>> register_spans;
   std::vector<std::pair<unsigned, unsigned>> coil_spans;
@@ -165,19 +262,28 @@ struct Profile
   std::optional<double> response_timeout;
   /// The drive may be deaf that long after a trip reset or power-up [s].
   double deaf_after_reset = 0.0;
+  /// Silence that the drive needs before a request besides the protocol's own [s].
+  double quiet_before = 0.0;
 
   std::map<std::string, Point> points;
-  /// forward, reverse, stop, coast, quick, reset, release, store.
+  /// Numbers with names, operation codes of CompoWay/F among them.
+  std::map<std::string, Constant> constants;
+  /// forward, reverse, stop, coast, quick, reset, release, store, connect, open_setup, close_setup.
   std::map<std::string, Sequence> sequences;
   /// Item that reads 1 while the drive stores to EEPROM.
   std::optional<Item> store_busy;
-  /// Parameters are written to RAM and kept by `store` (MX2, RX), or every write reaches the EEPROM (VF-S15).
-  bool writes_reach_eeprom = false;
+  Writes writes = Writes::Ram;
 
   /// Monitor items by field name of the status message: run_seen, raw_status, operation, running, direction, ready, at_speed,
-  /// at_set_frequency, overload_warning, pid_deviation, faulted, fault_code, warning_code, output_frequency,
+  /// at_set_frequency, overload_warning, pid_deviation, faulted, restarted, fault_code, warning_code, output_frequency,
   /// output_current, output_voltage, dc_voltage, torque, temperature.
   std::map<std::string, Item> status;
+  /// What is read in a refresh when no field of \ref status can be.
+  std::optional<Item> keep_alive;
+  std::optional<Block> block;
+  /// Parameters that tell the ratings [A, V]; empty: none, or not confirmed.
+  std::string rated_current_parameter;
+  std::string rated_voltage_parameter;
   /// Fields of \ref status that are read at 1 Hz instead of in every refresh.
   std::set<std::string> slow;
   /// Fields of \ref status that are read only while the drive is tripped.
@@ -185,6 +291,8 @@ struct Profile
 
   FaultTable faults;
   FaultTable warnings;
+  /// The warning code is a set of bits: each entry of the table with all of its bits in it applies.
+  bool warning_bits = false;
   FaultHistory history;
   std::map<std::string, Parameter> parameters;
   /// Registers (as printed, from..to) that command the drive: no parameter there can be written.
@@ -211,6 +319,9 @@ struct Profile
   std::set<std::string> unconfirmed;
   /// Names that only concern entries of the tables: parameters, their ranges, trip texts.
   std::set<std::string> unconfirmed_tables;
+
+  /// The register or variable after \p number, counted as the drive counts: distances are differences of these.
+  unsigned position(std::uint16_t number) const;
 };
 
 /// What a scan list entry changes in its profile.

@@ -37,13 +37,16 @@ struct BusConfig
   std::vector<DriveConfig> drives;  ///< in the order of the list
 };
 
-/// Reads the driver's own parameters file: `baud_rate`, `parity`, `data_bits`, `stop_bits`, `defaults` and `scan_list`
-/// (a list, or a bit mask as integer or string: 0x.. or #..) count here, other keys of the driver are passed over. An
-/// optional top-level map `simulation` says more about the simulated drives, by name:
+/// Reads the driver's own parameters file: `protocol`, `baud_rate`, `parity`, `data_bits`, `stop_bits`, `defaults` and
+/// `scan_list` (a list, or a bit mask as integer or string: 0x.. or #..) count here, other keys of the driver are passed
+/// over. A CompoWay/F bus has 7 data bits, even parity and 2 stop bits unless the file says otherwise. An optional
+/// top-level map `simulation` says more about the simulated drives, by name:
 ///
 ///     simulation:
 ///       belt_1: {model: omron_mx2, parameters: {C077: 1.0}, turnaround: 0.005, start_up_time: 1.0, reset_silence: 1.0,
 ///                eeprom_time: 0.3, load: 0.3, restart_after_timeout: false, self_clearing_coils: false}
+///       pump: {model: teco_7200ma, reverse_word: 2, monitor_base: 0x0020}
+///       fan: {model: omron_3g3je, operation_codes: {run_forward: "1101"}, area_1_readable: true}
 ///
 /// `model` is needed where `drive` is not one of driveModels() (a profile of one's own).
 /// @param overrides top-level keys that replace the text's, e.g. { "baud_rate", "9600" }
@@ -55,6 +58,9 @@ BusConfig busConfigFromFile(const std::string& path, const std::map<std::string,
 
 /// Names that `drive` and `model` know.
 std::vector<std::string> driveModels();
+
+/// What the drive's bus speaks. @throws ConfigError for an unknown model
+Protocol protocolOf(const DriveConfig& config);
 
 /// @throws ConfigError for an unknown model, and for what the drive itself refuses
 std::unique_ptr<SimulatedDrive> makeDrive(const DriveConfig& config);

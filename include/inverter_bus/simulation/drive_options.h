@@ -36,6 +36,13 @@ struct DriveOptions
   /// The coils for external trip and reset fall back by themselves (true) or stay as written (false). The manuals don't
   /// say; LinuxCNC's wj200_vfd writes them on only.
   bool self_clearing_coils = false;
+  /// 7200MA: command word for reverse, 2 (a run bit of its own) or 3 (direction bit beside RUN). Unknown, see TecoDrive.
+  int reverse_word = 2;
+  int monitor_base = 0x0020;  ///< 7200MA: first monitor register. Unknown, see TecoDrive.
+  /// 3G3JE: service 30 05 by meaning, four hexadecimal digits (command code, related information). Unknown, see JeDrive;
+  /// replaces its invented ones by name: { "run_forward", "1101" }
+  std::map<std::string, std::string> operation_codes;
+  bool area_1_readable = true;               ///< 3G3JE: C3 can be read in setup area 0; the manual doesn't say
   std::map<std::string, double> parameters;  ///< as set at the panel, in the panel's unit: { "C077", 1.0 }
 };
 }  // namespace simulation

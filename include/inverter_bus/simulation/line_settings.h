@@ -17,13 +17,26 @@ enum class Parity
   ODD
 };
 
-/// How bytes travel on the line.
+enum class Protocol
+{
+  MODBUS_RTU,
+  COMPOWAY_F
+};
+
+/// @return as the scan list names it: "modbus_rtu"
+inline const char* nameOf(Protocol protocol)
+{
+  return protocol == Protocol::MODBUS_RTU ? "modbus_rtu" : "compoway_f";
+}
+
+/// How bytes and frames travel on the line.
 struct LineSettings
 {
   int baud_rate = 19200;  ///< [bit/s], > 0
   Parity parity = Parity::NONE;
   int data_bits = 8;  ///< 7 or 8
   int stop_bits = 1;  ///< 1 or 2
+  Protocol protocol = Protocol::MODBUS_RTU;
 
   /// Time of one byte on the wire: start bit, data, parity, stop.
   Duration characterTime() const
@@ -32,11 +45,21 @@ struct LineSettings
     return seconds(static_cast<double>(bits) / baud_rate);
   }
 
-  /// The silence that ends a frame and has to come before the next one: 3.5 characters, 1.75 ms above 19200 baud
-  /// (MODBUS over Serial Line V1.02, 2.5.1.1).
+  /// The silence that has to come before a request. Modbus RTU: 3.5 characters, 1.75 ms above 19200 baud (MODBUS over
+  /// Serial Line V1.02, 2.5.1.1). CompoWay/F: 2 ms (OMRON E5CN; the 3G3JE's pages don't say).
   Duration frameGap() const
   {
+    if (protocol == Protocol::COMPOWAY_F)
+    {
+      return std::chrono::milliseconds(2);
+    }
     return baud_rate > 19200 ? seconds(0.00175) : characterTime() * 7 / 2;
+  }
+
+  /// The silence by which a drive knows that a request is over; CompoWay/F knows it by its last byte.
+  Duration frameEnd() const
+  {
+    return protocol == Protocol::COMPOWAY_F ? Duration::zero() : frameGap();
   }
 };
 }  // namespace simulation

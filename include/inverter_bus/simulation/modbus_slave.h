@@ -37,6 +37,8 @@ struct ModbusLimits
   std::uint16_t coils = 0;                     ///< most coils of one request
   std::uint16_t read_registers = 0;            ///< most registers of one read
   std::uint16_t write_registers = 0;           ///< most registers of one write
+  /// To an 08h with another sub-code than 0000h.
+  ModbusException loop_back_refusal = ModbusException::FORMAT_NOT_ACCEPTABLE;
 };
 
 /// A Modbus RTU slave: check sum, lengths, function codes and limits; a brand adds its coils and registers. Addresses
@@ -48,6 +50,7 @@ public:
 
   bool addressedBy(const Bytes& frame) const override;
   bool isWholeFrame(const Bytes& frame) const override;
+  int largestException() const override;
 
 protected:
   std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) override;
@@ -58,6 +61,8 @@ protected:
 
   /// @return true when `station` addresses several drives and this one is among them; plain Modbus: 0
   virtual bool isGroup(std::uint8_t station) const;
+  /// @return false for a broadcast that the drive passes over although its function code is one for broadcasts
+  virtual bool takesBroadcast(const Bytes& frame) const;
   /// From the end of the request's silence to the reply.
   virtual Duration replyDelay() const = 0;
   /// A good request was heard (the drive's communication watchdog lives on this); before it is executed.

@@ -38,10 +38,10 @@ public:
     return static_cast<std::uint8_t>(next() & 0xFFU);
   }
 
-  /// @return 1 ... 255: what damages a byte for certain when XORed onto it
+  /// @return 1 ... 127: what damages a byte for certain when XORed onto it, on a line with 7 data bits too
   std::uint8_t damage()
   {
-    return static_cast<std::uint8_t>(1U + below(255U));
+    return static_cast<std::uint8_t>(1U + below(127U));
   }
 
 private:

@@ -23,7 +23,9 @@ namespace simulation
 struct Answer
 {
   Bytes bytes;
-  Duration delay{};  ///< from the end of the request's 3.5-character silence to the reply's first start bit
+  Duration
+      delay{};  ///< from the end of the request (Modbus: of its 3.5-character silence) to the reply's first start bit
+  bool exception = false;  ///< the drive refuses the request
 };
 
 /// What a drive saw of the bus.
@@ -34,7 +36,7 @@ struct ExchangeCounters
   std::uint64_t exceptions = 0;  ///< answers that were exceptions
   std::uint64_t damaged = 0;     ///< frames to this station with a wrong check sum or length
   std::uint64_t unheard = 0;     ///< requests while off, offline, starting up or silent after a reset
-  std::uint64_t lost_gap = 0;    ///< requests lost because they came before the 3.5-character silence
+  std::uint64_t lost_gap = 0;    ///< requests lost because they came before the silence (LineSettings::frameGap())
   std::uint64_t early = 0;       ///< the same, but served (--gap ignore)
   std::uint64_t lost_busy = 0;   ///< requests lost because the drive still owed an earlier reply
 };
@@ -47,7 +49,7 @@ using KeyValues = std::vector<std::pair<std::string, std::string>>;
 /// be operated "by hand" (panel, mains switch, load). Time comes in as an argument only and must never go back; chance
 /// comes from the seed only. Not for several threads at once.
 ///
-/// Derive from it for a protocol (ModbusSlave) and from that for a brand (HitachiDrive).
+/// Derive from it for a protocol (ModbusSlave, CompowaySlave) and from that for a brand (HitachiDrive).
 class SimulatedDrive
 {
 public:
@@ -60,7 +62,7 @@ public:
   const std::string& name() const;
   int station() const;
 
-  /// A complete frame was heard; called at the end of its 3.5-character silence.
+  /// A complete frame was heard; called at its end (Modbus: of its 3.5-character silence).
   /// @return the reply, or nothing (other station, broadcast, damaged, deaf, fault)
   std::optional<Answer> handle(const Bytes& frame, TimePoint now);
 
@@ -71,6 +73,8 @@ public:
   virtual bool addressedBy(const Bytes& frame) const = 0;
   /// @return true for a complete frame with a right check sum
   virtual bool isWholeFrame(const Bytes& frame) const = 0;
+  /// @return the largest number that can be injected as an exception
+  virtual int largestException() const = 0;
 
   /// @return false when the drive has no power or its connection to the bus is cut: a reply that it owes won't come
   bool canSend() const;
@@ -123,8 +127,10 @@ public:
 protected:
   /// @name What a protocol provides
   /// @{
-  /// A whole frame for this drive. @param[out] good false when the drive doesn't take it for a request (wrong length)
+  /// A frame for this drive, whole unless answersDamaged(). @param[out] good false when the drive doesn't take it for a request (wrong length)
   virtual std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) = 0;
+  /// @return true when the drive answers a damaged frame too
+  virtual bool answersDamaged() const;
   virtual bool isBroadcast(const Bytes& frame) const = 0;
   virtual std::optional<int> functionOf(const Bytes& frame) const = 0;
   virtual Answer exceptionAnswer(const Bytes& frame, int code) = 0;

@@ -21,7 +21,7 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// What happens to a request whose first byte comes before the line was silent for 3.5 characters.
+/// What happens to a request whose first byte comes before the line was silent for LineSettings::frameGap().
 enum class GapRule
 {
   ENFORCE,  ///< no drive hears it, as on a real line
@@ -58,9 +58,10 @@ struct FrameRecord
   };
   TimePoint time;  ///< start of its first byte
   Source source = Source::MASTER;
-  std::string drive;   ///< who sent it, if a drive
-  Bytes bytes;         ///< as on the wire: damage included
-  std::string remark;  ///< "lost: gap", "damaged: collision", ...; empty: all well
+  std::string drive;    ///< who sent it, if a drive
+  std::string station;  ///< as the frame says: "1"; CompoWay/F: "01", "XX"; empty: it doesn't say
+  Bytes bytes;          ///< as on the wire: damage included
+  std::string remark;   ///< "lost: gap", "damaged: collision", ...; empty: all well
 };
 
 struct LineCounters
@@ -78,14 +79,16 @@ struct LineCounters
 /// in.
 ///
 /// - Each byte occupies the wire for start + data + parity + stop bits; bytes handed over together follow back to back.
-/// - A frame ends with 3.5 characters of silence; then the drives get it, and the answering one starts after its delay.
+/// - A Modbus frame ends with 3.5 characters of silence, a CompoWay/F frame with the byte after ETX, whatever pauses are
+///   in it; then the drives get it, and the answering one starts after its delay.
 /// - Two transmissions at once damage each other's bytes where they overlap.
-/// - A request that comes before the line was silent for 3.5 characters is lost (GapRule).
+/// - A request that comes before the line was silent for LineSettings::frameGap() is lost (GapRule).
+/// - With 7 data bits the eighth bit of a byte is not sent.
 ///
 /// **The gap in real time.** A process is woken late, never early. What the master writes is stamped when it is read,
 /// so its stamp is late or right. What the master reads it can have seen no earlier than it was handed over; that, not
 /// the ideal end of the byte on the wire, is what takeOutput() takes as the end of the line's activity: a master that
-/// reads the last byte late and then waits its 3.5 characters is always in time, one that doesn't wait is found out
+/// reads the last byte late and then waits its time is always in time, one that doesn't wait is found out
 /// however late this process was. `gap_tolerance` covers the granularity of the master's own timer and a late stamp on
 /// a frame that nobody answers (after it the master waits far longer anyway).
 ///
@@ -175,6 +178,7 @@ private:
   void processTransmission(Transmission& transmission, TimePoint time);
   void deliver(Transmission& transmission, TimePoint time);
   void finishRequest(Transmission& transmission);
+  bool takeFrame(Bytes& bytes);
   void serve(const Transmission& transmission, const Bytes& frame, TimePoint time, std::string& remark);
   void finishReply(Transmission& transmission);
   void report(const Transmission& transmission, const std::string& remark);
@@ -184,7 +188,8 @@ private:
 
   LineOptions options_;
   Duration character_;
-  Duration gap_;
+  Duration gap_;  // before a request
+  Duration end_;  // after a request
   Random random_;
   std::vector<SimulatedDrive*> drives_;
   std::function<void(const FrameRecord&)> observer_;
@@ -197,6 +202,7 @@ private:
   bool connected_ = true;
   bool echo_ = false;
   bool silent_ = false;
+  Bytes unfinished_;  // CompoWay/F: heard by the drives, and no end of a frame in it
   LineCounters counters_;
 };
 }  // namespace simulation

@@ -65,9 +65,9 @@ struct FrameEvent
 struct LineCounters
 {
   std::uint64_t requests = 0;
-  std::uint64_t replies = 0;  ///< valid replies, exceptions included
-  std::uint64_t timeouts = 0;
-  std::uint64_t corrupt_replies = 0;
+  std::uint64_t replies = 0;          ///< valid replies, exceptions included
+  std::uint64_t timeouts = 0;         ///< a gateway's exceptions 0AH and 0BH included
+  std::uint64_t corrupt_replies = 0;  ///< damaged in either direction
   std::uint64_t exceptions = 0;
   std::uint64_t late_replies = 0;
   std::uint64_t foreign_frames = 0;  ///< frames that nobody here asked for: a second master
@@ -86,7 +86,7 @@ struct LateReply
 /// user of the Port, called by the bus thread only. It decides nothing: no retries, no priorities.
 ///
 /// After a time-out or a damaged reply, the shape of that request is barred for one second (contract, rule 3.9),
-/// because Modbus RTU has no transaction number: a reply that comes late would be taken for the answer to the next
+/// because most protocols have no transaction number: a reply that comes late would be taken for the answer to the next
 /// request of the same shape. The bar falls when the late reply has come, or when a loop-back (08H) of that station
 /// with a fresh number was answered after it.
 class Line
@@ -119,8 +119,9 @@ public:
   /// Earliest time from which mayAsk() is true without further traffic.
   TimePoint mayAskAt(const Request& request) const;
 
-  /// Sends and waits for the answer; closes the port if it is lost. Call settle() before. Does not consult mayAsk(): a
-  /// stop is exempt from it. \p turnaround_after silence to keep after a broadcast.
+  /// Sends, after the silence that Request::quiet_before asks for, and waits for the answer; closes the port if it is
+  /// lost. Call settle() before. Does not consult mayAsk(): a stop is exempt from it. \p turnaround_after silence to
+  /// keep after a broadcast.
   Reply exchange(const Request& request, Duration turnaround_after = Duration{ 0 });
 
   /// Time that an answered exchange occupies the line: gap, request, gap + reply delay, reply.
@@ -136,8 +137,9 @@ public:
 
 private:
   struct Waiting;
+  bool settle(Duration quiet);
   bool send(const Bytes& frame, Reply& reply);
-  Waiting startWaiting(const Request& request, const Bytes& frame, TimePoint sent_at);
+  Waiting startWaiting(const Request& request, TimePoint sent_at);
   void waitForReply(Waiting& waiting, Reply& reply);
   TimePoint waitUntil(const Waiting& waiting) const;
   ReceiveResult receive(TimePoint deadline);
@@ -146,6 +148,7 @@ private:
   bool answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
   void accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
   void noteAnswer(const Parsed& parsed, const Bytes& raw);
+  void expectEcho(const Request& request, const Bytes& frame);
   void giveUp(Waiting& waiting, Reply& reply);
   void lose(Reply& reply);
   void consumeIdle();
@@ -158,6 +161,9 @@ private:
   void skip(std::size_t count);
   Bytes take(std::size_t count);
   Duration gap() const;
+  Duration gatewayGap() const;
+  Duration heldBack(const Request& request) const;
+  Duration timeToSend(const Request& request) const;
 
   Port& port_;
   Protocol& protocol_;
@@ -170,6 +176,8 @@ private:
   Bytes damaged_;
   TimePoint ready_at_;
   TimePoint last_byte_at_;
+  /// When the line was last in use, in either direction.
+  TimePoint last_use_at_;
   /// When the head of the buffer arrived.
   TimePoint head_at_;
   ReplyBars bars_;

@@ -15,7 +15,7 @@ namespace wire
 /// One question on the bus, without the framing that a protocol puts around it.
 struct Request
 {
-  /// Station number on the bus; 0 with \ref broadcast.
+  /// Station number on the bus (0 with \ref broadcast; a normal unit of CompoWay/F otherwise).
   std::uint8_t station = 0;
   /// Modbus: function code and data. CompoWay/F: the command text (MRC, SRC, ...) in ASCII.
   Bytes pdu;
@@ -23,6 +23,9 @@ struct Request
   bool broadcast = false;
   /// False where the drive executes without a reply (VF-S15 fault reset): silence is then the normal end.
   bool expects_reply = true;
+  /// Silence that the drive wants before the request, counted from the last byte on the line; the protocol's gap is kept
+  /// in any case.
+  Duration quiet_before{ 0 };
   /// The drive's own reply delay on top of the protocol's gap (C078, F805).
   Duration reply_delay{ 0 };
   /// Silence after the request that counts as lost.
@@ -37,9 +40,11 @@ enum class Outcome
   /// The drive answered that it will not (Modbus exception, CompoWay/F response code). It is alive: never counts
   /// towards offline and is never repeated.
   Exception,
-  /// No byte in time. Repeated up to `retries`; counts towards offline.
+  /// No byte in time, or a gateway says that the drive has not answered (exceptions 0AH and 0BH). Repeated up to
+  /// `retries`; counts towards offline.
   Timeout,
-  /// Bytes came, but no valid reply to this request. Repeated like a time-out.
+  /// Bytes came, but no valid reply to this request; or the drive says that the request reached it damaged (error_id is
+  /// then its end code, 0010 to 0013 hex). Repeated like a time-out.
   Damaged,
   /// The port is gone. Not the drive's fault; nothing is repeated before the port is open again.
   PortLost
@@ -49,7 +54,8 @@ enum class Outcome
 struct Reply
 {
   Outcome outcome = Outcome::Timeout;
-  /// Ok: the reply without framing, function code first. Exception: the same (function | 0x80, code).
+  /// Ok: the reply without framing, function code first (CompoWay/F: the response text). Exception: the same (function |
+  /// 0x80, code).
   Bytes pdu;
   /// The contract's error id: 0, 0x0205, 0x0206, 0x0207, 0x8xyy or a CompoWay/F code.
   std::uint16_t error_id = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "poll_tty.h"
+#include "poll_descriptor.h"
 
 #include <poll.h>
 
@@ -25,28 +25,28 @@ timespec timeLeft(TimePoint deadline)
 }
 }  // namespace
 
-TtyState pollTty(int tty, short events, TimePoint deadline)
+DescriptorState pollDescriptor(int descriptor, short events, TimePoint deadline)
 {
-  pollfd descriptor{ tty, events, 0 };
+  pollfd polled{ descriptor, events, 0 };
   int count = -1;
   do
   {
     // ppoll and not poll: a gap is a few milliseconds, and a whole one too long would cost a tenth of the bus time.
     const timespec time = timeLeft(deadline);
-    count = ::ppoll(&descriptor, 1, &time, nullptr);
+    count = ::ppoll(&polled, 1, &time, nullptr);
   } while (count < 0 && errno == EINTR);
 
   if (count == 0)
   {
-    return TtyState::Silent;
+    return DescriptorState::Silent;
   }
-  const bool hung_up = count < 0 || (descriptor.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
-  return hung_up ? TtyState::HungUp : TtyState::Ready;
+  const bool hung_up = count < 0 || (polled.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  return hung_up ? DescriptorState::HungUp : DescriptorState::Ready;
 }
 
-bool waitUntilWritable(int tty, TimePoint deadline)
+bool waitUntilWritable(int descriptor, TimePoint deadline)
 {
-  return pollTty(tty, POLLOUT, deadline) == TtyState::Ready;
+  return pollDescriptor(descriptor, POLLOUT, deadline) == DescriptorState::Ready;
 }
 }  // namespace wire
 }  // namespace inverter_bus

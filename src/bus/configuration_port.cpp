@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// From a judged configuration to the parts of the wire room that it asks for.
+
+#include "inverter_bus/bus/configuration.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// A gateway may cut a frame into segments, and the network may hold one back.
+constexpr double NETWORK_DELIVERY_S = 0.1;
+}  // namespace
+
+std::unique_ptr<wire::Protocol> makeProtocol(const BusConfig& config)
+{
+  if (config.protocol == "compoway_f")
+  {
+    return wire::makeCompowayF();
+  }
+  return config.modbus_tcp ? wire::makeModbusTcp() : wire::makeModbusRtu();
+}
+
+std::unique_ptr<wire::Port> makePort(const BusConfig& config)
+{
+  return config.gateway ? wire::makeTcpPort(*config.gateway, config.port) : wire::makeSerialPort(config.serial);
+}
+
+wire::LineTiming makeTiming(const BusConfig& config)
+{
+  const unsigned bits = wire::bitsPerCharacter(config.serial);
+  return config.gateway ? wire::LineTiming(config.serial.baud_rate, bits, seconds(NETWORK_DELIVERY_S))
+                        : wire::LineTiming(config.serial.baud_rate, bits);
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// The part of Drive that reads words of the user's choice and writes command words beside them.
+
+#include <algorithm>
+
+#include "codec.h"
+#include "inverter_bus/drive/drive.h"
+#include "numbers.h"
+#include "read_plan.h"
+
+namespace inverter_bus
+{
+namespace drive
+{
+namespace
+{
+constexpr unsigned LEAST_WORDS = 2;  // VF-S15: E6581913 p27, 2 to 5 words
+
+const Item* itemOf(const Profile& profile, int code)
+{
+  const auto found = code < 0 ? profile.block->codes.end() : profile.block->codes.find(static_cast<unsigned>(code));
+  return found == profile.block->codes.end() || !found->second.item ? nullptr : &*found->second.item;
+}
+
+bool isBrought(const ReadBlock& block, const std::string& field)
+{
+  return std::find(block.fields.begin(), block.fields.end(), field) != block.fields.end();
+}
+
+std::vector<ReadBlock> planBeside(const Profile& profile, const ReadBlock& block, bool slow)
+{
+  std::map<std::string, Item> items;
+  for (const auto& [field, item] : profile.status)
+  {
+    const bool wanted = (profile.slow.count(field) != 0) == slow && profile.when_faulted.count(field) == 0;
+    if (wanted && item.unconfirmed.empty() && !isBrought(block, field))
+    {
+      items[field] = item;
+    }
+  }
+  return planReads(items, profile);
+}
+
+std::vector<std::uint16_t> inSlotOrder(const Block& block, const std::vector<Word>& words)
+{
+  std::vector<std::uint16_t> values;
+  for (const auto& entry : block.select)
+  {
+    const auto word = std::find_if(words.begin(), words.end(),
+                                   [&entry](const Word& candidate) { return candidate.first == entry.first; });
+    values.push_back(static_cast<std::uint16_t>(word == words.end() ? 0 : word->second & 0xFFFF));
+  }
+  return values;
+}
+
+wire::Request request(std::uint8_t station, wire::Bytes pdu)
+{
+  wire::Request result;
+  result.station = station;
+  result.pdu = std::move(pdu);
+  return result;
+}
+}  // namespace
+
+std::optional<ReadBlock> Drive::chosenRead(const std::vector<int>& codes) const
+{
+  if (!profile_.block)
+  {
+    return std::nullopt;
+  }
+  ReadBlock block = blockAround(profile_.block->read);
+  std::size_t last = 0;
+  for (std::size_t slot = 0; slot < codes.size() && slot < profile_.block->read_slots.size(); ++slot)
+  {
+    if (codes[slot] != 0 && itemOf(profile_, codes[slot]) == nullptr)
+    {
+      return std::nullopt;
+    }
+    const Item* item = itemOf(profile_, codes[slot]);
+    block.chosen.push_back(item == nullptr ? std::uint16_t{ 0 } : item->number);
+    last = item == nullptr ? last : slot + 1;
+  }
+  block.count = std::max<unsigned>(LEAST_WORDS, static_cast<unsigned>(last));
+  block.chosen.resize(block.count, 0);
+  for (const auto& [field, item] : profile_.status)
+  {
+    const bool there = std::find(block.chosen.begin(), block.chosen.end(), item.number) != block.chosen.end();
+    if (there && item.unconfirmed.empty() && item.space == Space::Register && item.size == 1 &&
+        profile_.when_faulted.count(field) == 0)
+    {
+      block.fields.push_back(field);
+    }
+  }
+  return last == 0 ? std::nullopt : std::optional<ReadBlock>(block);
+}
+
+std::vector<ReadBlock> Drive::fastBlocksBeside(const ReadBlock& block) const
+{
+  return planBeside(profile_, block, false);
+}
+
+std::vector<ReadBlock> Drive::slowBlocksBeside(const ReadBlock& block) const
+{
+  return planBeside(profile_, block, true);
+}
+
+bool Drive::fitsBlockWrite(const std::vector<Word>& words) const
+{
+  if (!profile_.block || words.size() != profile_.block->select.size())
+  {
+    return false;
+  }
+  return std::all_of(profile_.block->select.begin(), profile_.block->select.end(), [&words](const auto& entry) {
+    return std::any_of(words.begin(), words.end(), [&entry](const Word& word) { return word.first == entry.first; });
+  });
+}
+
+wire::Request Drive::writeChosen(std::uint8_t station, const std::vector<Word>& words) const
+{
+  return request(station, encodeWriteRegisters(profile_.block->write.address, inSlotOrder(*profile_.block, words)));
+}
+
+wire::Request Drive::writeAndRead(std::uint8_t station, const std::vector<Word>& words, const ReadBlock& block) const
+{
+  return request(station, encodeReadWrite(block, profile_.block->write.address, inSlotOrder(*profile_.block, words)));
+}
+
+std::vector<std::pair<std::string, std::string>> Drive::chosenValues(const ReadBlock& block, const wire::Bytes& reply,
+                                                                     const Ratings& ratings) const
+{
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& entry : profile_.block->codes)
+  {
+    const auto& item = entry.second.item;
+    const bool shown = item && std::any_of(block.fields.begin(), block.fields.end(), [&](const std::string& field) {
+                         return profile_.status.at(field).number == item->number;
+                       });
+    const auto raw = item && !shown ? extractRaw(*item, block, reply, profile_) : std::nullopt;
+    if (!raw)
+    {
+      continue;
+    }
+    double value = scaled(*item, *raw);
+    std::string unit = item->unit;
+    const auto& rating = item->base == Base::RatedVoltage ? ratings.voltage : ratings.current;
+    if (item->base != Base::None && rating)
+    {
+      value = value / 100.0 * *rating;
+      unit = item->base == Base::RatedVoltage ? "V" : "A";
+    }
+    values.emplace_back(entry.second.title, formatNumber(value) + (unit.empty() ? "" : " " + unit));
+  }
+  return values;
+}
+}  // namespace drive
+}  // namespace inverter_bus

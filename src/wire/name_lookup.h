@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_WIRE_NAME_LOOKUP_H
+#define INVERTER_BUS_WIRE_NAME_LOOKUP_H
+
+#include <future>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/wire/tcp_port.h"
+
+namespace inverter_bus
+{
+namespace wire
+{
+/// Looks up a host name in a thread of its own, for the system's resolver may block for half a minute and cannot be
+/// cancelled. (Boost.Asio's asynchronous resolver waits for it at its end.)
+class NameLookup
+{
+public:
+  NameLookup(std::string host, NameResolver resolver);
+
+  /// The addresses in numbers, as soon as they are there or at \p deadline; none, and \p error says why, if there are
+  /// none. A look-up that is not over by then goes on, and the next call takes its result.
+  std::vector<std::string> find(TimePoint deadline, std::string& error);
+
+private:
+  struct Found
+  {
+    std::vector<std::string> addresses;
+    std::string error;
+  };
+
+  bool start(std::string& error);
+
+  std::string host_;
+  NameResolver resolver_;
+  /// Valid while a look-up goes on or its result has not been taken.
+  std::future<Found> pending_;
+};
+}  // namespace wire
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_WIRE_NAME_LOOKUP_H

@@ -652,15 +652,17 @@ std::uint16_t Coordinator::judgeWrite(const Inverter& inverter, const std::strin
       return ERROR_NOT_ARMED;
     }
   }
+  if (!parameter)
+  {
+    why = name + (known->second.item.missing
+                      ? ": nobody knows its place: give it under overrides"
+                      : " is unconfirmed: confirm '" + inverter.drive.missingForParameter(name) + "'");
+    return ERROR_NOT_ARMED;
+  }
   if (persist && profile.writes == drive::Writes::Unknown)
   {
     why = "the drive's manual does not say whether a write outlives a power-off: call with persist = false";
     return ERROR_NOT_OFFERED;
-  }
-  if (!parameter)
-  {
-    why = name + " is unconfirmed: confirm '" + inverter.drive.missingForParameter(name) + "'";
-    return ERROR_NOT_ARMED;
   }
   return 0;
 }

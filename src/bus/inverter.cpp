@@ -642,7 +642,8 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   InverterView view;
   const drive::Monitor& monitor = refresh.fresh();
   view.offline = offline_;
-  view.at_rest = known_ && drive.tellsRun() && !movement.runPossible() && !movement.target() &&
+  const bool tells = monitor.run_seen || monitor.operation || monitor.running;
+  view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
                  !monitor.faulted.value_or(false);
   view.stop_pending = stop.pending();

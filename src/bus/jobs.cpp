@@ -104,7 +104,7 @@ Job::Progress ResetJob::done(const wire::Reply& reply)
     case Phase::CheckRun:
       drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
       // A word that means nothing is no proof that RUN is off.
-      if (monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(true))
+      if (monitor.run_seen.value_or(true))
       {
         if (run_was_on_)
         {

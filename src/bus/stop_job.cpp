@@ -114,7 +114,7 @@ StopJob::Progress StopJob::done(const wire::Reply& reply)
   drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
   has_told_ = true;
   // A word that means nothing is no proof that RUN is off.
-  const bool still_on = monitor.run_seen ? *monitor.run_seen : monitor.running.value_or(true);
+  const bool still_on = monitor.run_seen.value_or(true);
   if (still_on)
   {
     last_error_ = 0;

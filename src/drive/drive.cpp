@@ -65,15 +65,13 @@ std::vector<ReadBlock> planFast(const Profile& profile)
 
 std::optional<ReadBlock> planRunRead(const Profile& profile)
 {
-  for (const char* field : { "run_seen", "running" })
+  // Not `running`: a motor that still ramps down after a stop is no RUN.
+  const auto found = profile.status.find("run_seen");
+  if (found == profile.status.end() || !usable(found->second))
   {
-    const auto found = profile.status.find(field);
-    if (found != profile.status.end() && usable(found->second))
-    {
-      return planReads({ { found->first, found->second } }, profile).front();
-    }
+    return std::nullopt;
   }
-  return std::nullopt;
+  return planReads({ { found->first, found->second } }, profile).front();
 }
 
 wire::Request request(std::uint8_t station, wire::Bytes pdu)

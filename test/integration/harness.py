@@ -198,6 +198,17 @@ class Stream:
         self.end()
 
 
+class Frame:
+    """One frame of the simulated bus's trace."""
+
+    def __init__(self, time, sender, station, text):
+        self.time = float(time)  # [s] its end, since the simulated bus was started
+        self.sender = sender     # master, drive, foreign or noise
+        self.station = station
+        self.text = text.strip()
+        self.bytes = bytes.fromhex(self.text)
+
+
 class Bench:
     """A simulated bus and, when start_driver() was called, a driver on it."""
 
@@ -224,7 +235,7 @@ class Bench:
             if ramps:
                 details['parameters'] = dict(QUICK_RAMPS, **details.get('parameters', {}))
             drives[entry['name']] = details
-        line = {key: self.parameters[key] for key in ('baud_rate', 'parity', 'data_bits', 'stop_bits')
+        line = {key: self.parameters[key] for key in ('protocol', 'baud_rate', 'parity', 'data_bits', 'stop_bits')
                 if key in self.parameters}
         rospy.set_param(self.simulator_name, dict(line, port=self.link, scan_list=[
             {key: entry[key] for key in ('name', 'node', 'drive')} for entry in entries], simulation=drives))
@@ -278,6 +289,24 @@ class Bench:
     def send_group(self, **velocities):
         wait_for(lambda: self.group.get_num_connections() > 0, 'the subscription to ~command')
         self.group.publish(VelocityCommand(name=list(velocities), velocity=list(velocities.values())))
+
+    def frames(self, number=200):
+        """The last frames on the line, oldest first."""
+        texts = self.simulate('bus frames %d' % number).partition('ok')[2].split(' | ')
+        return [Frame(*text.split('#')[0].split(None, 3)) for text in texts if text.strip()]
+
+    def finding(self, name, *words):
+        """Waits until /diagnostics says all of these words of an inverter (or the bus); returns its entry."""
+        def said():
+            entry = self.diagnostics.get(name)
+            return entry if entry and all(word in entry.message for word in words) else None
+
+        return wait_for(said, lambda: '/diagnostics of %s with %s; last: %s' % (name, words, self.diagnostics.get(name)))
+
+    def value(self, name, key):
+        """What /diagnostics last said under a key; '' before that."""
+        entry = self.diagnostics.get(name)
+        return next((value.value for value in entry.values if value.key == key), '') if entry else ''
 
     def stop_all(self, mode=0):
         path = self.driver_name + '/stop'

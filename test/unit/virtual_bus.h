@@ -158,9 +158,8 @@ public:
     : simulated_(simulation::busConfigFromText(yaml), lineOptions(gap), clock_.now())
     , configuration_(read(yaml))
     , port_(simulated_, clock_)
-    , protocol_(wire::makeModbusRtu())
-    , line_(port_, *protocol_, clock_,
-            wire::LineTiming(configuration_.bus.serial.baud_rate, wire::bitsPerCharacter(configuration_.bus.serial)))
+    , protocol_(bus::makeProtocol(configuration_.bus))
+    , line_(port_, *protocol_, clock_, bus::makeTiming(configuration_.bus))
     , coordinator_(configuration_, line_)
     , loop_(coordinator_, line_, clock_, mutex_)
   {
@@ -282,6 +281,22 @@ public:
     const Box box = std::make_shared<std::optional<bus::Answer>>();
     coordinator_.writeParameter(clock_.now(), index, name, value, persist, into(box));
     return box;
+  }
+
+  /// All lines of /diagnostics about one inverter, findings and values.
+  std::string diagnostics(std::size_t index)
+  {
+    const bus::InverterReport report = coordinator_.report(clock_.now()).inverters.at(index);
+    std::string text;
+    for (const bus::Finding& finding : report.findings)
+    {
+      text += finding.text + "\n";
+    }
+    for (const auto& value : report.values)
+    {
+      text += value.first + " = " + value.second + "\n";
+    }
+    return text;
   }
 
   /// The answer of a call within \p limit seconds; a failed one if none came.

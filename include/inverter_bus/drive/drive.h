@@ -97,7 +97,7 @@ public:
   const std::vector<ReadBlock>& slowBlocks() const;
   /// Reads that are only made while the drive is tripped (fault code).
   const std::vector<ReadBlock>& faultBlocks() const;
-  /// The shortest read that shows run_seen (or running), for the read-back of a stop; empty: the drive can't tell.
+  /// The shortest read that shows run_seen, for the read-back of a stop; empty: the drive can't tell.
   const std::optional<ReadBlock>& runBlock() const;
 
   wire::Request read(std::uint8_t station, const ReadBlock& block) const;
@@ -107,7 +107,7 @@ public:
               const Ratings& ratings = Ratings()) const;
   /// One read for \p fields, which must lie close enough together.
   ReadBlock blockOf(const std::vector<std::string>& fields) const;
-  /// The drive can tell whether a RUN of the bus is on, or at least whether the motor runs.
+  /// The drive can tell whether a RUN of the bus is on.
   bool tellsRun() const;
 
   // --- block read and write ---------------------------------------------------------------------------------------

@@ -91,7 +91,7 @@ const DriveSettings::Setting* DriveSettings::known(const std::string& parameter)
 
 bool DriveSettings::due(const Setting& setting) const
 {
-  return setting.state == State::Unread && (!setting.when_commanded || commanded_);
+  return (setting.state == State::Unread || setting.again) && (!setting.when_commanded || commanded_);
 }
 
 const DriveSettings::Setting* DriveSettings::unread() const
@@ -132,11 +132,15 @@ void DriveSettings::reread(const std::string& parameter)
 
 void DriveSettings::commanded()
 {
-  commanded_ = true;
   for (Setting& setting : settings_)
   {
-    setting.state = setting.when_commanded ? State::Unread : setting.state;
+    if (setting.when_commanded && !commanded_)
+    {
+      setting.state = State::Unread;
+    }
+    setting.again = setting.again || setting.when_commanded;
   }
+  commanded_ = true;
 }
 
 void DriveSettings::released()
@@ -231,6 +235,7 @@ void DriveSettings::done(const wire::Reply& reply)
     return;
   }
   Setting& setting = settings_[static_cast<std::size_t>(asked - settings_.data())];
+  setting.again = setting.again && reply.outcome != wire::Outcome::Ok && reply.outcome != wire::Outcome::Exception;
   if (reply.outcome == wire::Outcome::Ok)
   {
     setting.raw = drive_.rawParameter(setting.parameter, reply.pdu);

@@ -24,6 +24,7 @@ constexpr double DEVIATION_PATIENCE_S = 2.0;
 // A drive that was switched off and on is deaf for a second: within half of that it can't have lost our RUN unseen.
 constexpr double RUN_EVIDENCE_S = 0.5;
 constexpr double CONNECT_PAUSE_S = 0.5;
+constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 
 std::string listed(const std::vector<int>& codes)
 {
@@ -321,6 +322,12 @@ Judgement Inverter::judge(TimePoint now)
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
   judgeRestart(monitor, judgement);
   compareMovement(now, monitor);
+  if (movement.runConfirmed() && now - command_source_at_ >= seconds(COMMAND_SOURCE_PERIOD_S))
+  {
+    // A panel or a terminal may take the drive over at any time.
+    settings.commanded();
+    command_source_at_ = now;
+  }
   leftover_judged_ = leftover_judged_ || monitor.run_seen || !drive.reports("run_seen");
   return judgement;
 }

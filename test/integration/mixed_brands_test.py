@@ -298,12 +298,17 @@ class TwoOfOneBrand(Brands):
 
     def startMixer2(self):
         """Another master sets it running: 0000H := 1 and 0001H := 20.00 Hz, until its frame meets none of the node's."""
+        def sent():
+            return int(self.bench.simulate('bus show').split('foreign=')[1])
+
         def runs():
-            if self.bench.real('mixer_2')['command'] != '1':
-                self.bench.simulate('bus foreign 02 10 00 00 00 02 04 00 01 07 D0')
-            return self.bench.frequency('mixer_2') > 19.9
+            before = sent()
+            self.bench.simulate('bus foreign 02 10 00 00 00 02 04 00 01 07 D0')
+            wait_for(lambda: sent() > before, "the other master's frame on the line")
+            return self.bench.real('mixer_2')['command'] == '1'
 
         wait_for(runs, 'mixer_2 set running by another master')
+        wait_for(lambda: self.bench.frequency('mixer_2') > 19.9, 'at 20 Hz')
 
     def testA7200maAsShippedTellsNothingAndSaysSo(self):
         status = self.bench['mixer_2'].fresh()

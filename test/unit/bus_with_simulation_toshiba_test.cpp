@@ -127,8 +127,9 @@ TEST(Toshiba, repeatsTheConfirmedWordsInEveryRefreshWhileTheyAreInForce)
   EXPECT_NEAR(*bus.status(0).monitor.output_frequency, 20.0, 0.01);
   EXPECT_NEAR(*bus.status(0).monitor.output_current, bus.motor("pump", "current"), 0.02);
   bus.clearFrames();
-  bus.command(0, 25.0);
-  bus.run(0.5);
+  bus.run(0.95);
+  bus.stream(0, 25.0, 0.1, 1.0);
+  bus.run(1.0);
   EXPECT_GE(bus.count("01 17 18 75 00 05 18 70 00 02 04 C4 00 09 C4"), 1U);
 }
 
@@ -339,6 +340,28 @@ TEST(Toshiba, aDriveThatRunsFromItsPanelIsLeftAlone)
   bus.run(5.0);
   EXPECT_EQ(bus.count(WRITE_COMMAND), 0U);
   EXPECT_NEAR(bus.motor("pump", "frequency"), 15.0, 0.1);
+}
+
+TEST(Toshiba, aTakeoverAtThePanelShows)
+{
+  VirtualBus bus(DIRECT);
+  settle(bus);
+  bus.stream(0, 20.0, 0.1, 30.0);
+  bus.run(4.0);
+  bus.world("pump panel 15");
+  EXPECT_TRUE(
+      bus.runUntil(12.0, [&] { return bus.diagnostics(0).find("not commanded by the bus") != std::string::npos; }));
+}
+
+TEST(Toshiba, aRestartWhileItStandsIsSeenAndTheMarkerWrittenAgain)
+{
+  VirtualBus bus(DIRECT);
+  bus.settleIn();
+  bus.run(1.0);
+  EXPECT_EQ(bus.motor("pump", "reset_marker"), 1.0);
+  bus.world("pump power_cycle 0.02");
+  EXPECT_TRUE(bus.runUntil(8.0, [&] { return bus.motor("pump", "reset_marker") == 1.0; }));
+  EXPECT_EQ(runFrames(bus), 0U);
 }
 
 TEST(Toshiba, anotherCommandSourceShowsOnceACommandIsInForce)

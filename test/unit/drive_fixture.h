@@ -131,6 +131,44 @@ parameters:
 )";
 }
 
+/// A small complete profile of a CompoWay/F drive. No such drive exists: its operation codes are inventions.
+inline std::string smallCompowayProfile()
+{
+  return R"(drive: small_fan
+title: A small fan drive
+protocol: compoway_f
+stations: {first: 0, last: 99}
+serial:
+  baud_rates: [9600]
+  data_bits: [7, 8]
+  parity: [even]
+  stop_bits: [2]
+limits:
+  services: [0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005]
+  read_elements: 2
+  write_elements: 2
+  frame: 40
+frequency:
+  maximum: 120.0
+operation_codes:
+  run_forward: {value: "AB01", unconfirmed: run_forward, where: "page 7"}
+  stop: {value: "AB00"}
+points:
+  frequency: {variable: C1/0000, resolution: 0.1, unit: Hz, wears: true}
+  operate: {operation: true}
+sequences:
+  forward: [{frequency: setpoint}, {operate: run_forward}]
+  stop: [{operate: stop}]
+status:
+  output_frequency: {variable: C0/0001, resolution: 0.1, unit: Hz}
+  torque: {variable: C0/0002, signed: true, resolution: 0.1, unit: "%"}
+  faulted: {variable: C0/0003, bit: 7}
+  raw_status: {controller_status: true}
+parameters:
+  P01: {variable: C3/0000, resolution: 0.1, unit: A, range: [0, 2.5]}
+)";
+}
+
 /// \p text with \p from, which must be there once, replaced by \p to.
 inline std::string replaced(const std::string& text, const std::string& from, const std::string& to)
 {

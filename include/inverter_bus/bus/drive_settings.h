@@ -53,7 +53,7 @@ public:
   void done(const wire::Reply& reply);
   /// A parameter was written through the node: what it means may have changed.
   void reread(const std::string& parameter);
-  /// A start of ours was confirmed: who commands the drive can be seen only now.
+  /// A command of ours is in force: who commands the drive can be seen only now. Again: it is looked at anew.
   void commanded();
   /// A stop of ours was confirmed: what was seen under command counts no more.
   void released();
@@ -94,6 +94,8 @@ private:
     /// Read only while a command of ours is in force.
     bool when_commanded = false;
     State state = State::Unread;
+    /// Known, but to be read anew.
+    bool again = false;
     std::uint32_t raw = 0;
     double value = 0.0;
   };

@@ -191,6 +191,7 @@ private:
   bool unexpected_motion_ = false;
   bool leftover_judged_ = false;
   bool early_trip_ = false;
+  TimePoint command_source_at_;
 
   // block read and write
   std::optional<TimePoint> run_shown_at_;

@@ -20,6 +20,36 @@ std::string milliseconds(Duration duration)
 }
 }  // namespace
 
+namespace
+{
+/// Block read and write, what is settled at connect.
+void addSpecialRequests(const InverterConfig& config, const drive::Drive& drive, std::vector<wire::Request>& requests)
+{
+  if (const auto block = drive.chosenRead(config.block_read))
+  {
+    std::vector<drive::Word> words;
+    for (const auto& entry : drive.profile().block->select)
+    {
+      words.emplace_back(entry.first, 0);
+    }
+    requests.push_back(drive.read(config.node, *block));
+    requests.push_back(drive.writeChosen(config.node, words));
+    requests.push_back(drive.writeAndRead(config.node, words, *block));
+  }
+  if (const auto attributes = drive.readAttributes(config.node))
+  {
+    requests.push_back(*attributes);
+  }
+  if (const drive::Sequence* connect = drive.sequence("connect"))
+  {
+    for (const drive::Step& step : connect->steps)
+    {
+      requests.push_back(drive.command(config.node, step));
+    }
+  }
+}
+}  // namespace
+
 Budget::Budget(const Configuration& configuration, const wire::Line& line) : configuration_(configuration), line_(line)
 {
 }
@@ -46,6 +76,7 @@ std::vector<wire::Request> Budget::requests(std::size_t index) const
       }
     }
   }
+  addSpecialRequests(config, drive, requests);
   for (wire::Request& request : requests)
   {
     request.response_timeout = seconds(config.response_timeout);

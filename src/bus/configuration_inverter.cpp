@@ -190,9 +190,14 @@ void readOptions(const Section& entry, InverterConfig& config)
   config.release_on_exit = entry.boolean("release_on_exit", config.release_on_exit);
 }
 
-/// Keys that mean something to one protocol only.
-void checkProtocolKeys(const Section& entry, const drive::Profile& profile)
+/// Keys that mean something to one protocol only, or contradict others.
+void checkProtocolKeys(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
 {
+  if (bus.parameters_read_only && entry.boolean("configure_block", false))
+  {
+    entry.fail("configure_block", "writes parameters, and parameter_access is read_only",
+               "false, or parameter_access: read_write");
+  }
   for (const char* key : { "configure_block", "block_read" })
   {
     if (profile.protocol == "compoway_f" && entry.has(key))
@@ -225,7 +230,7 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   checkProtocol(entry, profile, bus);
   config.node = readNode(entry, profile);
   checkArming(entry, drive);
-  checkProtocolKeys(entry, profile);
+  checkProtocolKeys(entry, profile, bus);
   readVelocities(entry, profile, config);
   readTimes(entry, profile, bus, config);
   readOptions(entry, config);

@@ -294,13 +294,29 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
   if (!block.chosen.empty() && inverter.mayRepeatWords(now))
   {
     const std::vector<drive::Word> words = inverter.movement.wordsInForce();
-    if (!words.empty())
-    {
-      current.request = inverter.drive.writeAndRead(inverter.config.node, words, block);
-    }
+    const wire::Request both =
+        words.empty() ? current.request : inverter.drive.writeAndRead(inverter.config.node, words, block);
+    // After a lost 17H that shape is barred for a while, the plain read is not.
+    current.request = line_.mayAsk(both) ? both : current.request;
   }
   current.request = inverter.prepared(current.request);
   return current;
+}
+
+/// All command words in one frame where the drive can; a word at a time where such a frame could give back a RUN that the
+/// drive has lost (rule 4.1), or where a late reply could be taken for its answer.
+std::optional<Write> Coordinator::nextWrite(TimePoint now, const Inverter& inverter) const
+{
+  const bool in_force = inverter.mayRepeatWords(now);
+  if (inverter.refresh.block() && (in_force || !inverter.movement.runConfirmed()))
+  {
+    const auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.block() : std::nullopt);
+    if (combined && line_.mayAsk(combined->request))
+    {
+      return combined;
+    }
+  }
+  return inverter.movement.next();
 }
 
 std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, const Pick& pick)
@@ -308,13 +324,7 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
   for (const std::size_t member : scheduler_->members(pick.command))
   {
     Inverter& inverter = *inverters_[member];
-    std::optional<Write> write;
-    if (inverter.refresh.block())
-    {
-      write = inverter.movement.nextCombined(inverter.mayRepeatWords(now) ? inverter.refresh.block() : std::nullopt);
-    }
-    write = write ? write : inverter.movement.next();
-    if (write)
+    if (const auto write = nextWrite(now, inverter))
     {
       Current current;
       current.pick = pick;
@@ -332,11 +342,25 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
 std::optional<Coordinator::Current> Coordinator::composeJob(TimePoint now, const Pick& pick)
 {
   RunningJob& running = jobs_.at(pick.command);
-  const Inverter& inverter = *inverters_[running.inverter];
-  if (running.job->kind() == CommandKind::Reset && !inverter.drive.tellsRun() && inverter.stop.pending())
+  Inverter& inverter = *inverters_[running.inverter];
+  const bool blind_reset = running.job->kind() == CommandKind::Reset && !inverter.drive.tellsRun();
+  if (blind_reset && inverter.movement.runPossible() && !inverter.stop.pending())
+  {
+    requestStop(now, inverter, StopMode::Decelerate, true, "RUN must be off before the trip is reset");
+  }
+  if (blind_reset && inverter.stop.pending())
   {
     // Nobody can ask this drive whether RUN is off: the stop must be confirmed first.
     scheduler_->postpone(pick.command, now + seconds(BLIND_RESET_PERIOD_S));
+    return std::nullopt;
+  }
+  if (running.job->needsRest() && (inverter.mayRun() || inverter.movement.target()))
+  {
+    Answer moving;
+    moving.error_id = ERROR_NOT_OFFERED;
+    moving.message = "not while the motor runs: it was started meanwhile";
+    scheduler_->erase(pick.command);
+    endJob(pick.command, moving);
     return std::nullopt;
   }
   Current current;
@@ -426,6 +450,16 @@ void Coordinator::sent(TimePoint now)
   }
   last_node_ = current_->request.station;
   Inverter& inverter = *inverters_[current_->inverter];
+  if (!current_->resync)
+  {
+    countWear(*current_);
+  }
+  const auto job = jobs_.find(current_->job);
+  if (current_->purpose == Purpose::Job && job != jobs_.end())
+  {
+    const auto* write = dynamic_cast<const WriteParameterJob*>(job->second.job.get());
+    inverter.setup_open = inverter.setup_open || (write != nullptr && write->inSetup());
+  }
   if (current_->purpose == Purpose::Velocity && !current_->resync)
   {
     inverter.movement.sent(current_->write);

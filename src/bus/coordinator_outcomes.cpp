@@ -57,7 +57,7 @@ void Coordinator::done(const wire::Reply& reply)
     return;
   }
   Inverter& inverter = *inverters_[current.inverter];
-  inverter.noteExchange(reply.finished_at, false);
+  inverter.noteExchange(reply.outcome);
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
     log(Level::Ok, inverter.config.name + ": online");
@@ -165,11 +165,7 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   Inverter& inverter = *inverters_[current.inverter];
   const TimePoint now = reply.finished_at;
   const bool cancelled = !scheduler_->velocityWaits(current.inverter);
-  countWear(current);
-  if (!cancelled && dropBlock(current, reply))
-  {
-    return;
-  }
+  noteBlockRefusal(current, reply);
   if (reply.outcome == wire::Outcome::Ok && !cancelled)
   {
     inverter.movement.confirmed(current.write, now);
@@ -215,28 +211,37 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   }
 }
 
-/// A set-point that reaches the drive's EEPROM wears it, answered or not.
+/// What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
 void Coordinator::countWear(const Current& current)
 {
+  if (current.purpose == Purpose::Broadcast)
+  {
+    return;
+  }
   Inverter& inverter = *inverters_[current.inverter];
-  if (inverter.drive.wears(current.write.point) && !inverter.settings.connected())
+  const auto job = jobs_.find(current.job);
+  const bool parameter = current.purpose == Purpose::Job && job != jobs_.end() &&
+                         job->second.job->kind() == CommandKind::WriteParameter &&
+                         inverter.drive.profile().writes == drive::Writes::Eeprom;
+  const bool set_point = current.purpose == Purpose::Velocity && inverter.drive.wears(current.write.point) &&
+                         !inverter.settings.connected();
+  if (parameter || set_point)
   {
     inverter.noteEepromWrite();
   }
 }
 
-/// A block write that the drive refuses goes again word by word; returns true if so.
-bool Coordinator::dropBlock(const Current& current, const wire::Reply& reply)
+/// A drive that can't carry out a block write (slots empty or not in effect) gets its words one by one from the next
+/// command on; this one is refused like any other, since nobody knows what the drive took of it.
+void Coordinator::noteBlockRefusal(const Current& current, const wire::Reply& reply)
 {
-  Inverter& inverter = *inverters_[current.inverter];
-  if (reply.outcome != wire::Outcome::Exception || current.write.more.empty())
+  constexpr std::uint8_t CANNOT_BE_EXECUTED = 0x04;
+  const bool refused = reply.outcome == wire::Outcome::Exception && !current.write.more.empty();
+  if (refused && (reply.error_id & 0xFFU) == CANNOT_BE_EXECUTED)
   {
-    return false;
+    Inverter& inverter = *inverters_[current.inverter];
+    inverter.dropBlock("the drive refuses the block write (" + inverter.drive.exceptionText(reply.error_id) + ")");
   }
-  inverter.movement.doubtful(current.write);
-  inverter.dropBlock("the drive refuses the block write (" + inverter.drive.exceptionText(reply.error_id) + ")");
-  finishExchange(current, reply, true);
-  return true;
 }
 
 void Coordinator::finishVelocity(const Current& current, const wire::Reply& reply)
@@ -293,20 +298,40 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
   }
 }
 
-/// What follows from the frame of a job, whatever its answer: wear of the EEPROM, and a drive that starts anew.
+/// What follows from the frame of a job, whatever its answer: a drive that starts anew.
 void Coordinator::doneStep(TimePoint now, const Current& current)
 {
   Inverter& inverter = *inverters_[current.inverter];
   const RunningJob& running = jobs_.at(current.job);
-  if (running.job->kind() == CommandKind::WriteParameter && inverter.drive.profile().writes == drive::Writes::Eeprom)
-  {
-    inverter.noteEepromWrite();
-  }
   if (!current.request.expects_reply)
   {
     // It executes without a reply and is deaf for a while: neither a time-out nor an offline drive.
     inverter.refresh_not_before = now + running.job->pause();
     inverter.settings.connectAgain();
+  }
+}
+
+/// However a job ends: what it may have changed in the drive is looked at again.
+void Coordinator::noteJobEnd(Inverter& inverter, const Job& job, const Answer& result)
+{
+  if (const auto* write = dynamic_cast<const WriteParameterJob*>(&job))
+  {
+    inverter.parameterWritten(write->parameter().name);
+    inverter.setup_open = false;
+    if (write->inSetup())
+    {
+      inverter.settings.leaveSetup();
+    }
+    if (write->parameter().setup)
+    {
+      // Leaving the setup area may have made the drive forget what it was told at connect.
+      inverter.settings.connectAgain();
+    }
+  }
+  if (dynamic_cast<const ConfigureBlockJob*>(&job) != nullptr)
+  {
+    log(result.success ? Level::Ok : Level::Warn, inverter.config.name + ": configure_block: " + result.message);
+    inverter.settings.restart();
   }
 }
 
@@ -323,16 +348,6 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
   }
   if (progress == Job::Progress::Done)
   {
-    if (const auto* write = dynamic_cast<const WriteParameterJob*>(running.job.get()))
-    {
-      inverter.settings.reread(write->parameter().name);
-    }
-    if (dynamic_cast<const ConfigureBlockJob*>(running.job.get()) != nullptr)
-    {
-      const Answer& result = running.job->answer();
-      log(result.success ? Level::Ok : Level::Warn, inverter.config.name + ": " + result.message);
-      inverter.settings.restart();
-    }
     endJob(id, Answer(running.job->answer()));
     return;
   }
@@ -354,9 +369,7 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
     finishExchange(current, reply, more);
-    const drive::Monitor& words = more ? inverter.refresh.words() : inverter.refresh.fresh();
-    const bool runs = words.operation.value_or(false) || words.running.value_or(false);
-    inverter.noteExchange(reply.finished_at, reply.outcome == wire::Outcome::Ok && runs);
+    inverter.noteStatus(reply, more);
     if (more)
     {
       actOn(reply.finished_at, inverter, inverter.judgeWords(reply.finished_at));
@@ -436,7 +449,8 @@ void Coordinator::doneSetting(const Current& current, const wire::Reply& reply)
 
 void Coordinator::configureBlock(TimePoint now, Inverter& inverter)
 {
-  const auto wanted = inverter.blockToConfigure();
+  const auto wanted =
+      shutting_down_ ? std::vector<std::pair<std::string, std::uint32_t>>() : inverter.blockToConfigure();
   if (wanted.empty())
   {
     return;

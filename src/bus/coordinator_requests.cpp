@@ -50,8 +50,15 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
   }
   else if (!inverter.wrongDrive().empty())
   {
-    judged.error_id = ERROR_NOT_ARMED;
+    const bool wrong = inverter.settings.identity() == Identity::Wrong;
+    judged.error_id = wrong ? ERROR_NOT_ARMED : ERROR_LOCKED;
     judged.text = inverter.wrongDrive();
+    return judged.error_id;
+  }
+  else if (inverter.inSetup())
+  {
+    judged.error_id = ERROR_LOCKED;
+    judged.text = "a parameter is being written in the drive's setup area";
     return judged.error_id;
   }
   else
@@ -300,11 +307,17 @@ void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uin
 /// Address 0 is executed by every drive, and the same register means something else on each brand.
 bool Coordinator::broadcastIsSafe() const
 {
-  const drive::Profile& first = inverters_.front()->drive.profile();
-  return connected_ && first.broadcast_stop && inverters_.size() > 1 &&
+  const drive::Drive& first = inverters_.front()->drive;
+  const auto stop_frame = [](const drive::Drive& drive) {
+    const drive::Sequence* stop = drive.sequence("stop");
+    return stop == nullptr ? wire::Bytes()
+                           : drive.write(0, stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
+  };
+  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() &&
          std::all_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
-           return profile.name == first.name && profile.broadcast_stop && inverter->drive.sequence("stop") != nullptr;
+           return profile.name == first.profile().name && profile.broadcast_stop &&
+                  inverter->settings.identity() == Identity::Right && stop_frame(inverter->drive) == stop_frame(first);
          });
 }
 
@@ -370,7 +383,7 @@ bool Coordinator::refuseWrongDrive(const Inverter& inverter, const AnswerCallbac
   const std::string why = inverter.offline() ? "" : inverter.wrongDrive();
   if (!why.empty() && !shutting_down_)
   {
-    refuseCall(callback, ERROR_NOT_ARMED, why);
+    refuseCall(callback, inverter.settings.identity() == Identity::Wrong ? ERROR_NOT_ARMED : ERROR_OFFLINE, why);
   }
   return !why.empty() && !shutting_down_;
 }
@@ -472,6 +485,7 @@ void Coordinator::endJob(CommandId id, const Answer& result)
   {
     return;
   }
+  noteJobEnd(*inverters_[found->second.inverter], *found->second.job, result);
   if (found->second.job->kind() == CommandKind::Reset)
   {
     inverters_[found->second.inverter]->reset_active = false;
@@ -509,6 +523,13 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
     refuseCall(callback, missing.empty() ? ERROR_NOT_OFFERED : ERROR_NOT_ARMED,
                missing.empty() ? "this drive has no fault reset"
                                : "fault reset is not armed: " + inverter.drive.armingAdvice("reset"));
+    return;
+  }
+  if (!shutting_down_ && !inverter.drive.tellsRun() && inverter.drive.sequence("stop") == nullptr)
+  {
+    refuseCall(
+        callback, ERROR_NOT_ARMED,
+        "a reset needs a confirmed stop before it, and a stop is not armed: " + inverter.drive.armingAdvice("stop"));
     return;
   }
   if (refuseJob(index, callback))

@@ -163,8 +163,22 @@ bool DriveSettings::connectDue() const
   return connect_state_ == State::Unread && identity() == Identity::Right && drive_.sequence("connect") != nullptr;
 }
 
+void DriveSettings::leaveSetup()
+{
+  leave_setup_ = drive_.sequence("close_setup") != nullptr;
+}
+
+bool DriveSettings::leavingSetup() const
+{
+  return leave_setup_;
+}
+
 bool DriveSettings::urgent() const
 {
+  if (leave_setup_)
+  {
+    return true;
+  }
   const bool parameter = std::any_of(settings_.begin(), settings_.end(),
                                      [this](const Setting& setting) { return setting.urgent && due(setting); });
   return modelDue() || parameter || connectDue();
@@ -177,6 +191,10 @@ bool DriveSettings::pending() const
 
 wire::Request DriveSettings::next() const
 {
+  if (leave_setup_)
+  {
+    return drive_.command(station_, drive_.sequence("close_setup")->steps.front());
+  }
   if (modelDue())
   {
     return *drive_.readAttributes(station_);
@@ -206,7 +224,7 @@ void DriveSettings::doneModel(const wire::Reply& reply)
 
 void DriveSettings::doneConnect(const wire::Reply& reply)
 {
-  if (reply.outcome == wire::Outcome::Exception)
+  if (isLastingRefusal(reply))
   {
     connect_error_ = reply.error_id;
     connect_state_ = State::Refused;
@@ -219,6 +237,11 @@ void DriveSettings::doneConnect(const wire::Reply& reply)
 
 void DriveSettings::done(const wire::Reply& reply)
 {
+  if (leave_setup_)
+  {
+    leave_setup_ = reply.outcome != wire::Outcome::Ok && !isLastingRefusal(reply);
+    return;
+  }
   if (modelDue())
   {
     doneModel(reply);
@@ -364,11 +387,12 @@ std::optional<Duration> DriveSettings::driveTimeout() const
     return loss.assumed_timeout > 0.0 ? std::optional<Duration>(seconds(loss.assumed_timeout)) : std::nullopt;
   }
   const Setting* setting = find(loss.timeout_parameter);
-  if (setting == nullptr || setting->state != State::Known || setting->value <= 0.0)
+  if (setting == nullptr || setting->state != State::Known)
   {
-    return std::nullopt;
+    // Until it is read the usual one is the safe assumption.
+    return loss.assumed_timeout > 0.0 ? std::optional<Duration>(seconds(loss.assumed_timeout)) : std::nullopt;
   }
-  return seconds(setting->value);
+  return setting->value > 0.0 ? std::optional<Duration>(seconds(setting->value)) : std::nullopt;
 }
 
 Duration DriveSettings::replyDelay() const

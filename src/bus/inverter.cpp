@@ -122,6 +122,8 @@ void Inverter::goOffline(std::uint16_t error_id)
   early_trip_ = false;
   exchange_error_ = error_id;
   run_shown_at_.reset();
+  run_proven_ = false;
+  setup_open = false;
   block_note_.clear();
   connect_not_before = TimePoint();
   interlock.offline();
@@ -182,12 +184,8 @@ void Inverter::adoptSettings()
   ratings.current = config.rated_current ? config.rated_current : ratings.current;
   ratings.voltage = config.rated_voltage ? config.rated_voltage : ratings.voltage;
   refresh.setRatings(ratings);
-  const auto slots = settings.blockSlots();
-  if (!slots || !block_note_.empty())
-  {
-    return;
-  }
-  refresh.useBlock(blockFits() ? drive.chosenRead(config.block_read) : std::nullopt);
+  const bool use = block_note_.empty() && blockFits();
+  refresh.useBlock(use ? drive.chosenRead(config.block_read) : std::nullopt);
 }
 
 bool Inverter::blockFits() const
@@ -216,23 +214,29 @@ std::vector<std::pair<std::string, std::uint32_t>> Inverter::blockToConfigure()
   // Once: each of these writes wears the EEPROM.
   block_configured_ = true;
   const drive::Block& block = *drive.profile().block;
+  const auto add = [&](const std::string& name, std::uint32_t raw) {
+    if (drive.findParameter(name, true))
+    {
+      wanted.emplace_back(name, raw);
+    }
+  };
   for (std::size_t slot = 0; slot < block.write_slots.size(); ++slot)
   {
     if (slots->write[slot] != static_cast<int>(block.select[slot].second))
     {
-      wanted.emplace_back(block.write_slots[slot], block.select[slot].second);
+      add(block.write_slots[slot], block.select[slot].second);
     }
   }
   for (std::size_t slot = 0; slot < block.read_slots.size() && slot < config.block_read.size(); ++slot)
   {
     if (slots->read[slot] != config.block_read[slot])
     {
-      wanted.emplace_back(block.read_slots[slot], static_cast<std::uint32_t>(config.block_read[slot]));
+      add(block.read_slots[slot], static_cast<std::uint32_t>(config.block_read[slot]));
     }
   }
   if (!block.apply_parameter.empty())
   {
-    wanted.emplace_back(block.apply_parameter, block.apply_value);
+    add(block.apply_parameter, block.apply_value);
   }
   return wanted;
 }
@@ -243,9 +247,76 @@ void Inverter::dropBlock(const std::string& why)
   refresh.useBlock(std::nullopt);
 }
 
-void Inverter::noteExchange(TimePoint now, bool shows_run)
+void Inverter::noteExchange(wire::Outcome outcome)
 {
-  run_shown_at_ = shows_run ? std::optional<TimePoint>(now) : std::nullopt;
+  run_shown_at_.reset();
+  if (outcome == wire::Outcome::Ok)
+  {
+    return;
+  }
+  run_proven_ = false;
+  if (outcome != wire::Outcome::Exception && drive.wears("frequency"))
+  {
+    // A short power cut may be behind it, after which the drive writes set-points to its EEPROM again.
+    settings.connectAgain();
+  }
+}
+
+/// The motor turns as we want it, or is on its way there: not on its way to rest after a RUN that the drive has lost.
+bool Inverter::followsTarget(const drive::Monitor& monitor)
+{
+  const auto& target = movement.target();
+  if (!target || target->zero || !monitor.output_frequency)
+  {
+    return false;
+  }
+  const double wanted = target->counts * drive.frequencyResolution();
+  const double distance = std::fabs(*monitor.output_frequency - wanted);
+  const double before = std::fabs(last_shown_hz_ - wanted);
+  last_shown_hz_ = *monitor.output_frequency;
+  const bool turns_right = !monitor.direction || *monitor.direction == (target->reverse ? -1 : 1);
+  return turns_right && (distance <= std::max(0.5, 0.02 * wanted) || distance < before);
+}
+
+void Inverter::noteStatus(const wire::Reply& reply, bool more)
+{
+  if (reply.outcome != wire::Outcome::Ok)
+  {
+    return;
+  }
+  if (!refresh.block() && refresh.takeBlockRefusal())
+  {
+    block_note_ = "it is selected but not in effect, or the drive refuses it";
+  }
+  const drive::Monitor& words = more ? refresh.words() : refresh.fresh();
+  const bool evidence = reply.sent_at >= movement.runChangedAt();
+  if (words.run_seen)
+  {
+    run_proven_ = *words.run_seen && evidence && movement.runConfirmed();
+  }
+  const bool runs = words.operation.value_or(false) || words.running.value_or(false);
+  if (runs && evidence && run_proven_ && followsTarget(words))
+  {
+    run_shown_at_ = reply.finished_at;
+  }
+}
+
+void Inverter::parameterWritten(const std::string& name)
+{
+  settings.reread(name);
+  const auto& block = drive.profile().block;
+  const auto among = [&name](const std::vector<std::string>& slots) {
+    return std::find(slots.begin(), slots.end(), name) != slots.end();
+  };
+  if (block && (among(block->read_slots) || among(block->write_slots)))
+  {
+    dropBlock("its selection was changed; that counts after the drive was switched off and on");
+  }
+}
+
+bool Inverter::inSetup() const
+{
+  return setup_open || settings.leavingSetup();
 }
 
 bool Inverter::mayRepeatWords(TimePoint now) const
@@ -340,6 +411,10 @@ void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
     return;
   }
   settings.restart();
+  // What was selected for its block read may count only now.
+  block_note_.clear();
+  refresh.useBlock(std::nullopt);
+  run_proven_ = false;
   if (movement.runPossible() && !stop.pending())
   {
     judgement.stop_reason = "the drive has restarted (switched off and on, or reset)";
@@ -358,6 +433,7 @@ Judgement Inverter::judgeWords(TimePoint now)
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
+  judgeRestart(words, judgement);
   return judgement;
 }
 

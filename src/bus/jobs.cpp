@@ -267,7 +267,35 @@ wire::Request WriteParameterJob::next()
     const auto busy = drive_.readStoreBusy(station_);
     return busy ? *busy : drive_.readParameter(station_, parameter_);
   }
+  opened_ = opened_ || phase_ == Phase::Open;
   return drive_.command(station_, stepsOf(phase_)->steps[step_]);
+}
+
+bool WriteParameterJob::needsRest() const
+{
+  return phase_ == Phase::Open && !opened_;
+}
+
+bool WriteParameterJob::inSetup() const
+{
+  return opened_ && !closed_;
+}
+
+Job::Progress WriteParameterJob::lost(const wire::Reply& reply)
+{
+  if (!inSetup())
+  {
+    return Job::lost(reply);
+  }
+  // The drive must not stay in its setup area: leave it, until the bound ends the trying.
+  refused_id_ = refused_id_ != 0 ? refused_id_ : reply.error_id;
+  refused_ = refused_.empty() ? "writing " + parameter_.name + ": " + errorText(reply.error_id) : refused_;
+  answer().error_id = refused_id_;
+  answer().message = refused_ + "; the drive may still be in its setup area, where it can't run";
+  phase_ = Phase::Close;
+  step_ = 0;
+  pause_ = seconds(VERIFY_PERIOD_S);
+  return Progress::GoesOn;
 }
 
 const drive::Sequence* WriteParameterJob::stepsOf(Phase phase) const
@@ -355,6 +383,7 @@ Job::Progress WriteParameterJob::afterSetupStep()
     phase_ = Phase::Write;
     return Progress::GoesOn;
   }
+  closed_ = true;
   return refused_id_ != 0 ? fail(refused_id_, refused_) : succeed(parameter_.name + kept());
 }
 
@@ -405,13 +434,18 @@ Job::Progress ConfigureBlockJob::done(const wire::Reply& reply)
 {
   if (reply.outcome == wire::Outcome::Exception)
   {
-    return refusedByDrive(reply, "configure_block: writing " + wanted_[step_].first);
+    return refusedByDrive(reply, "writing " + wanted_[step_].first);
   }
   if (++step_ < wanted_.size())
   {
     return Progress::GoesOn;
   }
-  return succeed("configure_block: the block read and write are set up");
+  return succeed("the block read and write are set up");
+}
+
+bool ConfigureBlockJob::needsRest() const
+{
+  return true;
 }
 
 Job::Progress ConfigureBlockJob::lost(const wire::Reply& reply)
@@ -419,7 +453,7 @@ Job::Progress ConfigureBlockJob::lost(const wire::Reply& reply)
   if (step_ + 1 == wanted_.size())
   {
     // The last write resets the drive's communication: its reply may get lost with that.
-    return succeed("configure_block: the block read and write are set up (the last write was not acknowledged)");
+    return succeed("the block read and write are set up (the last write was not acknowledged)");
   }
   return Job::lost(reply);
 }

@@ -135,8 +135,17 @@ void Refresh::useBlock(const std::optional<drive::ReadBlock>& block)
   }
   failed();
   block_ = block;
+  block_proven_ = false;
+  block_refusals_ = 0;
   chosen_values_.clear();
   buildBlocks();
+}
+
+bool Refresh::takeBlockRefusal()
+{
+  const bool refused = block_refused_;
+  block_refused_ = false;
+  return refused;
 }
 
 const std::optional<drive::ReadBlock>& Refresh::block() const
@@ -153,15 +162,17 @@ const std::vector<std::pair<std::string, std::string>>& Refresh::chosenValues() 
 bool Refresh::dropBlock()
 {
   useBlock(std::nullopt);
+  block_refused_ = true;
   return true;
 }
 
-/// Slots that were changed but don't count yet bring zeros: no status word of a live drive is 0 together with all others.
-bool Refresh::nothingChosen(const wire::Reply& reply) const
+/// Slots that were changed but don't count yet bring other words, or zeros. The status word must be what the direct read
+/// before it was; a drive that changes its state just then is read directly until its next return, which costs little.
+bool Refresh::isChosenWord(const Block& block, const wire::Reply& reply) const
 {
-  constexpr std::size_t HEADER = 2;
-  return reply.pdu.size() > HEADER &&
-         std::all_of(reply.pdu.begin() + HEADER, reply.pdu.end(), [](std::uint8_t byte) { return byte == 0; });
+  drive::Monitor values;
+  drive_.decode(block.read, reply.pdu, values, ratings_);
+  return !values.raw_status || !fresh_.raw_status || *values.raw_status == *fresh_.raw_status;
 }
 
 void Refresh::plan(TimePoint now)
@@ -276,10 +287,12 @@ bool Refresh::received(const wire::Reply& reply)
   Block& block = blocks_[plan_[position_]];
   if (!block.read.chosen.empty())
   {
-    if (nothingChosen(reply))
+    if (!block_proven_ && !isChosenWord(block, reply))
     {
       return dropBlock();
     }
+    block_proven_ = true;
+    block_refusals_ = 0;
     chosen_values_ = drive_.chosenValues(block.read, reply.pdu, ratings_);
   }
   block.values = drive::Monitor();
@@ -312,6 +325,12 @@ void Refresh::takeRunWords(const Block& block, const wire::Reply& reply)
 
 bool Refresh::refused(const wire::Reply& reply)
 {
+  constexpr unsigned MOST_BLOCK_REFUSALS = 2;
+  const bool chosen = !blocks_[plan_[position_]].read.chosen.empty();
+  if (chosen && ++block_refusals_ >= MOST_BLOCK_REFUSALS)
+  {
+    return dropBlock();
+  }
   if (!isLastingRefusal(reply))
   {
     // Busy, or locked for the moment: nothing is known, and nothing follows for later refreshes.

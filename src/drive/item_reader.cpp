@@ -149,9 +149,10 @@ void readValues(const YamlCursor& cursor, Item& item)
   {
     const auto raw = parseInteger(key);
     const auto value = meaning.integer(-1, 1);
-    if (!raw || *raw < 0 || *raw > 0xFFFF)
+    const std::int64_t highest = largestRaw(item);
+    if (!raw || *raw < 0 || *raw > highest)
     {
-      meaning.complain("the raw value '" + key + "': allowed: an integer from 0 to 65535");
+      meaning.complain("the raw value '" + key + "': allowed: an integer from 0 to " + std::to_string(highest));
     }
     else if (value)
     {
@@ -203,7 +204,7 @@ void readBits(YamlMap& map, const ItemRules& rules, Item& item)
   const bool has_bit = rules.bit && map.has("bit");
   if (rules.bit)
   {
-    const std::int64_t bit = map.integer("bit", 0, 15, 0);
+    const std::int64_t bit = map.integer("bit", 0, item.space == Space::Variable ? 31 : 15, 0);
     if (has_bit)
     {
       item.bit = static_cast<unsigned>(bit);

@@ -74,12 +74,13 @@ class ThroughGateway(unittest.TestCase):
         with self.bench.run('belt_1', 20.0):
             clients = self.gateway.clients
             reconnects = self.bench.bus_status.reconnects
-            self.gateway.accepting.clear()
-            self.gateway.disconnect()
-            belt.wait(lambda s: s.communication_error and s.known == 0, 'offline')
-            wait_for(lambda: not self.bench.bus_status.connected, 'not connected')
-            self.bench.finding('bus', str(self.gateway.port))
-            self.gateway.accepting.set()
+            self.gateway.down()
+            try:
+                belt.wait(lambda s: s.communication_error and s.known == 0, 'offline')
+                wait_for(lambda: not self.bench.bus_status.connected, 'not connected')
+                self.assertEqual(self.bench.finding('bus', str(self.gateway.port)).level, 2)
+            finally:
+                self.gateway.up()
             wait_for(lambda: self.bench.bus_status.connected and self.bench.bus_status.reconnects > reconnects,
                      'connected again')
             belt.wait(lambda s: not s.communication_error and s.locked, 'online and locked')
@@ -112,10 +113,16 @@ class ModbusTcp(ThroughGateway):
     def tearDown(self):
         self.gateway.before_answer = None
 
-    def stranger(self, step):
-        """An answer of the right station and shape, full of ones, under the number of another request."""
-        def build(number, reply):
-            lie = reply[:2] + (reply[2:3] + b'\xFF' * (len(reply) - 3) if reply[1] < 5 else reply[2:])
+    @staticmethod
+    def stranger(step):
+        """Before each answer one under the number of another request: full of ones, or the echo of a write."""
+        def build(number, request, reply):
+            if request[1] in (0x05, 0x06):
+                lie = request
+            elif reply[1] == request[1]:
+                lie = reply[:3] + b'\xFF' * (len(reply) - 3)
+            else:
+                return b''
             return struct.pack('>HHH', number + step & 0xFFFF, 0, len(lie)) + lie
 
         return build
@@ -135,12 +142,13 @@ class ModbusTcp(ThroughGateway):
             belt.wait(lambda s: not s.communication_error and s.error_id == 0, 'right answers count')
 
     def testAStopIsNotConfirmedByAForeignAnswer(self):
-        """The gateway swallows the answer to the stop and gives the echo of another one."""
+        """The drive doesn't hear the stop, and what comes back has its shape but the number of another request."""
         self.reach('belt_1', 20.0)
         self.bench.simulate('belt_1 lost_request count 1 function 5')
         self.gateway.before_answer = self.stranger(-1)
         answer = self.bench['belt_1'].stop()
         self.assertTrue(answer.success, answer.message)
+        self.assertEqual(self.bench.real('belt_1')['faults_waiting'], '0', 'the drive missed the first stop')
         self.assertEqual(self.bench.real('belt_1')['run_coil'], '0')
 
     def testAnAnswerThatComesOneRequestLateIsNeverTaken(self):
@@ -148,7 +156,7 @@ class ModbusTcp(ThroughGateway):
         belt = self.bench['belt_1']
         late = []
 
-        def delayed(number, reply):
+        def delayed(number, _, reply):
             late.append(struct.pack('>HHH', number, 0, len(reply)) + reply)
             return late.pop(0) if len(late) > 1 else b''
 

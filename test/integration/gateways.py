@@ -26,31 +26,40 @@ class Gateway:
     def __init__(self, link):
         self.line = os.open(link, os.O_RDWR | os.O_NOCTTY)
         tty.setraw(self.line)
+        self.port = 0
+        self.clients = 0
+        self.up()
+
+    def up(self):
+        """Listens, on the same port as before; until then connections are refused."""
         self.listener = socket.socket()
-        self.listener.bind(('127.0.0.1', 0))
+        self.listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self.listener.bind(('127.0.0.1', self.port))
         self.listener.listen(1)
         self.port = self.listener.getsockname()[1]
-        self.clients = 0
-        self.client = None
-        self.accepting = threading.Event()
-        self.accepting.set()
         self.ended = False
         self.thread = threading.Thread(target=self.run, daemon=True)
         self.thread.start()
 
+    def down(self):
+        """Closes the connection and listens no more, as a gateway that is switched off."""
+        self.ended = True
+        self.thread.join()
+        self.listener.close()
+
     def run(self):
         while not self.ended:
-            if not self.accepting.wait(0.05) or not select.select([self.listener], [], [], 0.05)[0]:
+            if not select.select([self.listener], [], [], 0.05)[0]:
                 continue
-            self.client = self.listener.accept()[0]
-            self.client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            client = self.listener.accept()[0]
+            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self.clients += 1
             try:
                 while not self.ended:
-                    self.serve(self.client)
+                    self.serve(client)
             except OSError:
-                pass  # the client has gone, or disconnect() was called
-            self.client.close()
+                pass  # the client has gone
+            client.close()
 
     def serve(self, client):
         """Passes on what there is, waiting for at most a moment; raises OSError when the connection is gone."""
@@ -64,14 +73,8 @@ class Gateway:
             raise OSError('closed by the client')
         return data
 
-    def disconnect(self):
-        """Closes the connection, as a gateway that restarts does."""
-        self.client.shutdown(socket.SHUT_RDWR)
-
     def close(self):
-        self.ended = True
-        self.thread.join()
-        self.listener.close()
+        self.down()
         os.close(self.line)
 
 
@@ -90,10 +93,8 @@ class ModbusGateway(Gateway):
     """A Modbus TCP gateway: the frame without its header goes onto the line, with a check sum."""
 
     def __init__(self, link):
-        self.rest = b''
-        self.before_answer = None  # called with (header fields, PDU) of each answer; returns bytes to send before it
-        self.swallow = 0           # so many answers get lost in the gateway
-        self.strangers = 0
+        self.before_answer = None  # called with the number, request and reply of each exchange; gives what goes before it
+        self.strangers = 0         # how often something went before an answer
         super().__init__(link)
 
     def serve(self, client):
@@ -103,9 +104,9 @@ class ModbusGateway(Gateway):
             frame, self.rest = self.rest[6:6 + length], self.rest[6 + length:]
             self.answer(client, number, protocol, frame)
 
-    def disconnect(self):
+    def up(self):
         self.rest = b''
-        super().disconnect()
+        super().up()
 
     def answer(self, client, number, protocol, frame):
         reply = self.exchange(frame)
@@ -113,12 +114,9 @@ class ModbusGateway(Gateway):
             return  # a broadcast
         reply = reply or bytes([frame[0], frame[1] | 0x80, 0x0B])
         if self.before_answer:
-            stranger = self.before_answer(number, reply)
+            stranger = self.before_answer(number, frame, reply)
             self.strangers += bool(stranger)
             client.sendall(stranger)
-        if self.swallow:
-            self.swallow -= 1
-            return
         client.sendall(struct.pack('>HHH', number, protocol, len(reply)) + reply)
 
     def exchange(self, frame):

@@ -189,7 +189,7 @@ const Mistake MISTAKES[] = {
   { "UnknownCoilWithoutMark", "  running: {coil: 5}", "  running: {coil: unknown}", "status.running", "is unknown: needs unconfirmed: NAME", 0 },
   { "UnknownPointWithoutMark", "  run: {coil: 1}", "  run: {coil: unknown}", "points.run", "is unknown: needs unconfirmed: NAME", 0 },
   { "UnknownConstantWithoutMark", "faults:", "constants: {reverse_word: {value: unknown}}\nfaults:", "constants.reverse_word", "is unknown: needs unconfirmed: NAME", 0 },
-  { "UnknownInQuotes", "faults:", "constants: {word: {value: \"unknown\", unconfirmed: word}}\nfaults:", "constants.word.value", "value 'unknown': allowed: a number", 0 },
+  { "UnknownInQuotes", "faults:", "constants: {word: {value: \"unknown\", unconfirmed: word}}\nfaults:", "constants.word.value", "value 'unknown' (a text, in quotes): allowed: a number", 0 },
   { "UnknownWhereItMayNotBe", "  maximum: 50.0", "  maximum: unknown", "frequency.maximum", "value 'unknown': allowed: a number", 0 },
   { "ConstantInfinite", "faults:", "constants: {word: {value: .inf}}\nfaults:", "constants.word.value", "value '.inf': allowed: a number", 0 },
   { "ConstantNamedLikeANumber", "faults:", "constants: {0x10: {value: 1}}\nfaults:", "constants.0x10", "can't be the name of a constant", 0 },
@@ -330,22 +330,22 @@ const Mistake COMPOWAY_MISTAKES[] = {
   { "VariableWithThreeDigits", "C0/0001", "C0/001", "status.output_frequency.variable", "as C1/0000", 0 },
   { "VariableWithFiveDigits", "C0/0001", "C0/00001", "status.output_frequency.variable", "as C1/0000", 0 },
   { "VariableWithoutASlash", "C0/0001", "C00001", "status.output_frequency.variable", "as C1/0000", 0 },
-  { "VariableWithoutAType", "C0/0001", "1", "status.output_frequency.variable", "as C1/0000", 0 },
+  { "VariableWithoutAType", "variable: C0/0001", "variable: 1", "status.output_frequency.variable", "as C1/0000", 0 },
   { "VariableIsAList", "C0/0001", "[C0, 1]", "status.output_frequency.variable", "allowed: a text on one line", 0 },
   { "VariableUnknownWithoutMark", "C0/0001", "unknown", "status.output_frequency", "needs unconfirmed: NAME", 0 },
   { "WordsOfAVariable", "C0/0001,", "C0/0001, words: 2,", "status.output_frequency.words", "unknown key", 0 },
   { "OperationFalse", "{operation: true}", "{operation: false}", "points.operate.operation", "allowed: true", 0 },
   { "ControllerStatusYes", "{controller_status: true}", "{controller_status: yes}", "status.raw_status.controller_status", "allowed: true", 0 },
-  { "OperationIsNotRead", "{controller_status: true}", "{operation: true}", "status.raw_status", "exactly one of the keys variable and controller_status", 0 },
+  { "OperationIsNotRead", "raw_status: {controller_status: true}", "raw_status: {operation: true}", "status.raw_status", "exactly one of the keys variable and controller_status", 0 },
   { "Numbering", "stations:", "numbering: {register_offset: 0}\nstations:", "numbering", "unknown key", 0 },
   { "Block", "parameters:", "block: {}\nparameters:", "block", "unknown key", 0 },
   { "UnknownService", "0x0801, 0x3005]", "0x0801, 0x0104, 0x3005]", "limits.services", "service 0x0104: allowed: 0x0101", 0 },
   { "ServiceTwice", "0x0801, 0x3005]", "0x0801, 0x0801, 0x3005]", "limits.services[5]", "twice", 0 },
   { "FunctionsForServices", "services: [0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005]", "functions: [3, 6]", "limits.services", "is missing", -1 },
-  { "NoServiceToOperate", ", 0x3005]", "]", "points.operate", "0x3005", 0 },
-  { "NoServiceToReadTheStatus", " 0x0601,", "", "status.raw_status", "0x0601", 0 },
-  { "NoServiceToRead", "[0x0101, ", "[", "status.faulted", "0x0101", 0 },
-  { "NoServiceToWrite", " 0x0102,", "", "points.frequency", "0x0102", 0 },
+  { "NoServiceToOperate", ", 0x3005]", "]", "points.operate", "0x3005", -1 },
+  { "NoServiceToReadTheStatus", " 0x0601,", "", "status.raw_status", "0x0601", -1 },
+  { "NoServiceToRead", "[0x0101, ", "[", "status.faulted", "0x0101", -1 },
+  { "NoServiceToWrite", " 0x0102,", "", "points.frequency", "0x0102", -1 },
   // A reply of three elements has 41 characters, a write of three 48; the drive's buffer holds 40.
   { "MoreElementsThanTheFrameReads", "read_elements: 2", "read_elements: 3", "limits.read_elements", "from 1 to 2", 0 },
   { "MoreElementsThanTheFrameWrites", "write_elements: 2", "write_elements: 3", "limits.write_elements", "from 1 to 2", 0 },
@@ -353,9 +353,9 @@ const Mistake COMPOWAY_MISTAKES[] = {
   { "RegistersForElements", "read_elements: 2", "read_registers: 2", "limits.read_registers", "unknown key", 0 },
   { "StationTooLarge", "last: 99", "last: 100", "stations.last", "from 0 to 99", 0 },
   { "SixDataBits", "data_bits: [7, 8]", "data_bits: [6]", "serial.data_bits[0]", "from 7 to 8", 0 },
-  { "CodeOfThreeDigits", "\"AB00\"", "\"AB0\"", "operation_codes.stop.value", "value 'AB0': allowed: four hexadecimal digits in quotes", 0 },
+  { "CodeOfThreeDigits", "\"AB00\"", "\"AB0\"", "operation_codes.stop.value", "value 'AB0' (a text, in quotes): allowed: four hexadecimal digits in quotes", 0 },
   { "CodeOfFiveDigits", "\"AB00\"", "\"AB000\"", "operation_codes.stop.value", "four hexadecimal digits in quotes", 0 },
-  { "CodeWithoutQuotes", "\"AB00\"", "0101", "operation_codes.stop.value", "value '0101': allowed: four hexadecimal digits in quotes", 0 },
+  { "CodeWithoutQuotes", "value: \"AB00\"", "value: 0101", "operation_codes.stop.value", "value '0101': allowed: four hexadecimal digits in quotes", 0 },
   { "CodeAsANumber", "\"AB00\"", "0xAB00", "operation_codes.stop.value", "four hexadecimal digits in quotes", 0 },
   { "CodeWithOtherLetters", "\"AB00\"", "\"AG00\"", "operation_codes.stop.value", "four hexadecimal digits in quotes", 0 },
   { "CodeUnknownWithoutMark", "{value: \"AB00\"}", "{value: unknown}", "operation_codes.stop", "needs unconfirmed: NAME", 0 },
@@ -366,10 +366,10 @@ const Mistake COMPOWAY_MISTAKES[] = {
   { "ResponseCodeTooLarge", "parameters:", "exceptions: {0x10000: x}\nparameters:", "exceptions.0x10000", "from 1 to 65535", 0 },
   { "SetupWithoutOpenSetup", "range: [0, 2.5]", "range: [0, 2.5], setup: true", "parameters.P01", "needs the sequences open_setup and close_setup", 0 },
   { "WearsInOtherWords", "wears: true", "wears: often", "points.frequency.wears", "allowed: true or false", 0 },
-  { "BitTooLarge", "bit: 7", "bit: 16", "status.faulted.bit", "from 0 to 15", 0 },
+  { "BitTooLarge", "bit: 7", "bit: 32", "status.faulted.bit", "from 0 to 31", 0 },
   { "TwoFlagsOnOneBit", "  raw_status:", "  ready: {variable: C0/0003, bit: 7}\n  raw_status:", "status.ready", "the same bit as 'faulted'", 0 },
   { "ParametersOverlap", "range: [0, 2.5]}", "range: [0, 2.5]}\n  P02: {variable: C3/0000}", "parameters.P02", "belongs to 'P01'", 1 },
-  { "ParameterOnAPoint", "C3/0000", "C1/0000", "parameters.P01", "read_only: true", 0 },
+  { "ParameterOnAPoint", "P01: {variable: C3/0000", "P01: {variable: C1/0000", "parameters.P01", "read_only: true", 0 },
   { "RangeBeyondTheVariable", "range: [0, 2.5]", "range: [-1, 2.5]", "parameters.P01.range", "the register holds only 0 to", 0 },
   { "ModelIsAList", "parameters:", "identity: [{model: [1]}]\nparameters:", "identity[0].model", "a text on one line", 0 },
 };
@@ -390,8 +390,8 @@ TEST(DriveLoader, TheSmallCompowayProfileOfTheseTestsIsFine)
 TEST(DriveLoader, SetupNeedsBothSequences)
 {
   std::string text = replaced(smallCompowayProfile(), "range: [0, 2.5]", "range: [0, 2.5], setup: true");
-  text = replaced(text, "  stop: [{operate: stop}]\n",
-                  "  stop: [{operate: stop}]\n  open_setup: [{operate: 0xAB07}]\n");
+  text =
+      replaced(text, "  stop: [{operate: stop}]\n", "  stop: [{operate: stop}]\n  open_setup: [{operate: 0xAB07}]\n");
   const ProfileFile half(text);
   EXPECT_THAT(checkProfile(half.path()), SizeIs(1));
   const ProfileFile whole(replaced(text, "  open_setup:", "  close_setup: [{operate: 0xAB08}]\n  open_setup:"));

@@ -183,6 +183,7 @@ private:
   Pick pickShutdown(TimePoint now);
   std::optional<Current> compose(TimePoint now, const Pick& pick);
   Current composeRefresh(TimePoint now, const Pick& pick);
+  std::optional<Write> nextWrite(TimePoint now, const Inverter& inverter) const;
   std::optional<Current> composeVelocity(TimePoint now, const Pick& pick);
   std::optional<Current> composeJob(TimePoint now, const Pick& pick);
   Current composeProbe(const Pick& pick);
@@ -194,9 +195,10 @@ private:
   void doneStop(const Current& current, const wire::Reply& reply);
   void doneVelocity(const Current& current, const wire::Reply& reply);
   void countWear(const Current& current);
-  bool dropBlock(const Current& current, const wire::Reply& reply);
+  void noteBlockRefusal(const Current& current, const wire::Reply& reply);
   void configureBlock(TimePoint now, Inverter& inverter);
   void doneStep(TimePoint now, const Current& current);
+  void noteJobEnd(Inverter& inverter, const Job& job, const Answer& result);
   void finishVelocity(const Current& current, const wire::Reply& reply);
   void doneJob(const Current& current, const wire::Reply& reply);
   void doneRefresh(const Current& current, const wire::Reply& reply);

@@ -45,6 +45,9 @@ public:
   void restart();
   /// The drive has forgotten what it was told: the sequence `connect` goes again.
   void connectAgain();
+  /// The drive may have been left in its setup area: it is led out of it before anything else.
+  void leaveSetup();
+  bool leavingSetup() const;
   /// Something is left that comes before the first status.
   bool urgent() const;
   /// Another exchange is to be made.
@@ -124,6 +127,7 @@ private:
   State connect_state_ = State::Unread;
   std::uint16_t connect_error_ = 0;
   bool commanded_ = false;
+  bool leave_setup_ = false;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -113,8 +113,14 @@ public:
   std::vector<std::pair<std::string, std::uint32_t>> blockToConfigure();
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
-  /// An exchange ended: \p shows_run if it was a status read with our RUN in force.
-  void noteExchange(TimePoint now, bool shows_run);
+  /// An exchange ended; a lost one ends all that was proven of RUN.
+  void noteExchange(wire::Outcome outcome);
+  /// It was a read of a refresh (that goes on, with \p more): what it shows of RUN.
+  void noteStatus(const wire::Reply& reply, bool more);
+  /// A parameter was written through this node.
+  void parameterWritten(const std::string& name);
+  /// A parameter is being written in the drive's setup area, where it can't run.
+  bool inSetup() const;
   /// A refresh may repeat the confirmed command words (rule 4.1).
   bool mayRepeatWords(TimePoint now) const;
   /// The motor may turn, as far as anybody can tell.
@@ -146,6 +152,8 @@ public:
   void noteExchangeError(std::uint16_t error_id);
 
   bool reset_active = false;
+  /// Frames of a job have led the drive into its setup area.
+  bool setup_open = false;
   TimePoint refresh_not_before;
   TimePoint connect_not_before;
   int refresh_tries = 0;
@@ -157,6 +165,7 @@ public:
 
 private:
   void adoptSettings();
+  bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
   std::string blockFinding() const;
   std::vector<int> wantedWriteCodes() const;
@@ -195,6 +204,9 @@ private:
 
   // block read and write
   std::optional<TimePoint> run_shown_at_;
+  /// The drive's own copy of our RUN command was read as on since the last lost exchange.
+  bool run_proven_ = false;
+  double last_shown_hz_ = 0.0;
   bool block_configured_ = false;
   std::string block_note_;
   std::uint64_t eeprom_writes_ = 0;

@@ -41,6 +41,12 @@ public:
   /// Lost after its repeats. Ends the job unless a subclass knows better.
   virtual Progress lost(const wire::Reply& reply);
 
+  /// The next frame may only go while the motor stands and no command waits.
+  virtual bool needsRest() const
+  {
+    return false;
+  }
+
   CommandKind kind() const;
   Duration pause() const;
   Answer& answer();
@@ -125,6 +131,10 @@ public:
                     std::uint32_t raw, bool persist, std::set<std::string>& ram_changes);
   wire::Request next() override;
   Progress done(const wire::Reply& reply) override;
+  Progress lost(const wire::Reply& reply) override;
+  bool needsRest() const override;
+  /// The drive has been led into its setup area and not out of it again.
+  bool inSetup() const;
   const drive::Parameter& parameter() const;
 
 private:
@@ -149,6 +159,8 @@ private:
   std::set<std::string>& ram_changes_;
   Phase phase_;
   std::size_t step_ = 0;
+  bool opened_ = false;
+  bool closed_ = false;
   /// Why the write failed while the drive is still to be led out of its setup area.
   std::uint16_t refused_id_ = 0;
   std::string refused_;
@@ -164,6 +176,7 @@ public:
   wire::Request next() override;
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
+  bool needsRest() const override;
 
 private:
   std::vector<std::pair<std::string, std::uint32_t>> wanted_;

@@ -33,6 +33,8 @@ public:
   void useBlock(const std::optional<drive::ReadBlock>& block);
   /// The read of chosen words, while it is in use.
   const std::optional<drive::ReadBlock>& block() const;
+  /// The drive has refused the read of chosen words, or it brought something else than what was chosen; true once.
+  bool takeBlockRefusal();
   /// Titles and values of chosen words that no status field shows.
   const std::vector<std::pair<std::string, std::string>>& chosenValues() const;
 
@@ -85,7 +87,7 @@ private:
   void planSlow(TimePoint now);
   void buildBlocks();
   void takeRunWords(const Block& block, const wire::Reply& reply);
-  bool nothingChosen(const wire::Reply& reply) const;
+  bool isChosenWord(const Block& block, const wire::Reply& reply) const;
   bool dropBlock();
   void planFaultReads();
   bool advance();
@@ -110,6 +112,10 @@ private:
   drive::Ratings ratings_;
   std::optional<drive::ReadBlock> block_;
   std::vector<std::pair<std::string, std::string>> chosen_values_;
+  /// It has brought the same status word as a direct read before it.
+  bool block_proven_ = false;
+  bool block_refused_ = false;
+  unsigned block_refusals_ = 0;
   /// The slow words that decide over safety have come since the last return.
   bool run_heard_ = false;
 };

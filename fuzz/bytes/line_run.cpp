@@ -24,7 +24,7 @@ using wire::Parsed;
 using wire::Reply;
 using wire::Request;
 
-constexpr std::size_t MOST_EXCHANGES = 8;
+constexpr std::size_t MOST_EXCHANGES = 4;
 constexpr std::array<unsigned, 4> BAUD_RATES{ 9600, 19200, 115200, 2400 };
 constexpr unsigned BITS_PER_CHARACTER = 11;
 /// Characters that an exchange may take with everything around it: request, reply, a gateway's wait for both, gaps.
@@ -134,7 +134,7 @@ void parseAll(const Dialect& dialect, const wire::Protocol& protocol, const Requ
     protocol.shapeOfReply(parsed);
     place += std::max<std::size_t>(1, parsed.consumed);
   }
-  const std::size_t step = 1 + bytes.size() / 32;
+  const std::size_t step = 1 + bytes.size() / 8;
   for (std::size_t size = 0; size < bytes.size(); size += step)
   {
     const Bytes beginning(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));

@@ -189,14 +189,17 @@ public:
   Answer answerAt(const Request& request, std::size_t /*number*/, const std::uint8_t* data,
                   std::size_t size) const override
   {
-    for (const std::size_t length : { std::size_t{ 5 }, 1 + zeroReply(request.pdu).size() + CRC_SIZE })
+    if (size < 2 || request.broadcast || data[0] != request.station)
     {
-      Answer answer = length <= size && isFrame(data, length) ? judge(request, data, length - CRC_SIZE) : Answer();
-      if (answer.kind != Parsed::Kind::Incomplete)
-      {
-        answer.length = length;
-        return answer;
-      }
+      return Answer();
+    }
+    const bool refused = data[1] >= 0x80;
+    const std::size_t length = refused ? 5 : 1 + zeroReply(request.pdu).size() + CRC_SIZE;
+    Answer answer = length <= size ? judge(request, data, length - CRC_SIZE) : Answer();
+    if (answer.kind != Parsed::Kind::Incomplete && isFrame(data, length))
+    {
+      answer.length = length;
+      return answer;
     }
     return Answer();
   }

@@ -34,7 +34,7 @@ void useBlocks(const Drive& drive, const std::vector<drive::ReadBlock>& blocks)
   for (const drive::ReadBlock& block : blocks)
   {
     require(!drive.read(1, block).pdu.empty(), "an empty request");
-    for (const std::uint8_t byte : { 0x00, 0x30, 0xFF })
+    for (const unsigned char byte : { std::uint8_t{ 0x00 }, std::uint8_t{ 0x30 }, std::uint8_t{ 0xFF } })
     {
       drive::Monitor monitor;
       drive.decode(block, fullReply(block, byte), monitor);

@@ -185,7 +185,9 @@ std::optional<Write> Movement::nextCombined(const std::optional<drive::ReadBlock
   write.point = words.back().first;
   write.raw = words.back().second;
   write.more.assign(words.begin(), words.end() - 1);
-  write.starts = std::any_of(words.begin(), words.end(), [this](const drive::Word& word) { return startsWith(word); });
+  // A word that is confirmed already changes nothing, whether the frame arrives or not.
+  write.starts = std::any_of(words.begin(), words.end(),
+                             [this](const drive::Word& word) { return startsWith(word) && !isConfirmed(word); });
   write.request = read ? drive_.writeAndRead(config_.node, words, *read) : drive_.writeChosen(config_.node, words);
   return write;
 }
@@ -201,6 +203,10 @@ std::vector<drive::Word> Movement::wordsInForce() const
 
 void Movement::sentWord(const drive::Word& word)
 {
+  if (isConfirmed(word))
+  {
+    return;
+  }
   words_.erase(word.first);
   if (startsWith(word))
   {
@@ -225,6 +231,10 @@ void Movement::sent(const Write& write)
 
 void Movement::confirmedWord(const drive::Word& word, TimePoint now)
 {
+  if (isConfirmed(word))
+  {
+    return;
+  }
   words_[word.first] = word.second;
   if (stop_values_.count(word.first) != 0)
   {
@@ -255,10 +265,16 @@ void Movement::confirmed(const Write& write, TimePoint now)
 
 void Movement::doubtful(const Write& write)
 {
-  words_.erase(write.point);
-  for (const drive::Word& word : write.more)
+  std::vector<drive::Word> words = write.more;
+  words.emplace_back(write.point, write.raw);
+  for (const drive::Word& word : words)
   {
-    words_.erase(word.first);
+    // Sending has taken out what the frame was to change; what is left was in force before, and must not be sent anew
+    // because of a lost frame: that would give back a RUN which the drive has lost.
+    if (!isConfirmed(word))
+    {
+      words_.erase(word.first);
+    }
   }
 }
 

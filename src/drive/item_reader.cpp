@@ -72,7 +72,8 @@ std::int64_t readBase(YamlMap& map, const Numbering& numbering, Item& item)
   const double base = constant->value.value_or(0.0);
   if (base != std::floor(base) || base < 0.0 || base > static_cast<double>(MAX_NUMBER))
   {
-    cursor->complain("the constant is no register number: allowed: an integer from 0 to 65535");
+    cursor->problems().add(constant->place, constant->key,
+                           "value " + formatNumber(base) + ": allowed: an integer from 0 to 65535");
     return 0;
   }
   return static_cast<std::int64_t>(base);
@@ -173,7 +174,8 @@ void readResolution(const YamlCursor& cursor, const Numbering& numbering, Item& 
   item.resolution = constant->value.value_or(1.0);
   if (!(item.resolution > 0.0))
   {
-    cursor.complain("the constant is " + formatNumber(item.resolution) + ": allowed: a number above 0");
+    cursor.problems().add(constant->place, constant->key,
+                          "value " + formatNumber(item.resolution) + ": allowed: a number above 0");
     item.resolution = 1.0;
   }
 }
@@ -381,6 +383,11 @@ std::vector<std::pair<unsigned, unsigned>> readSpans(const YamlCursor& cursor, c
     if (!first || !last)
     {
       continue;
+    }
+    if (space == Space::Register)
+    {
+      checkDigits(ends[0], numbering, *first);
+      checkDigits(ends[1], numbering, *last);
     }
     if (*last < *first || (!spans.empty() && *first <= static_cast<std::int64_t>(spans.back().second)))
     {

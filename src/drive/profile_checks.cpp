@@ -177,7 +177,9 @@ private:
       {
         names += (names.empty() ? "" : " or ") + formatHex(function);
       }
-      at(key).complain("needs function " + names + ": limits.functions lacks it");
+      const bool services = profile_.protocol == "compoway_f";
+      at(key).complain("needs " + std::string(services ? "service " : "function ") + names + ": limits." +
+                       (services ? "services" : "functions") + " lacks it");
     }
   }
 

@@ -57,7 +57,8 @@ bool readNamedValue(const YamlCursor& value, const Numbering& numbering, Step& s
   const double number = constant->second.value.value_or(0.0);
   if (number != std::floor(number) || number < 0.0 || number > 4294967295.0)
   {
-    value.complain("the constant is " + formatNumber(number) + ": allowed: an integer from 0 on");
+    value.problems().add(constant->second.place, constant->second.key,
+                         "value " + formatNumber(number) + ": allowed: an integer from 0 on");
     return true;
   }
   step.value = static_cast<std::uint32_t>(number);

@@ -49,6 +49,8 @@ Constant readConstant(const YamlCursor& cursor, bool operation_code)
     }
     return constant;
   }
+  constant.place = value->value().where;
+  constant.key = value->path();
   constant.value = operation_code ? readOperationCode(*value) : value->number(-4294967296.0, 4294967296.0);
   return constant;
 }

@@ -23,7 +23,7 @@ std::set<std::uint32_t> readCodes(const YamlCursor& cursor)
   return codes;
 }
 
-std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key)
+std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key, bool compoway = false)
 {
   std::vector<Expectation> expectations;
   const auto cursor = root.find(key);
@@ -35,7 +35,11 @@ std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key)
   {
     YamlMap map(entry);
     Expectation expectation;
-    const auto model = key == "identity" ? map.find("model") : std::nullopt;
+    const auto model = key == "identity" && compoway ? map.find("model") : std::nullopt;
+    if (model && model->text().value_or("").empty())
+    {
+      model->complain("is empty: needs the text that the drive's model begins with");
+    }
     const auto parameter = model ? std::nullopt : map.require("parameter");
     const auto accept = model ? std::nullopt : map.require("accept");
     expectation.model = model ? model->text().value_or("") : "";
@@ -58,7 +62,7 @@ std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key)
 
 void readSupervision(YamlMap& root, Profile& profile)
 {
-  profile.identity = readExpectations(root, "identity");
+  profile.identity = readExpectations(root, "identity", profile.protocol == "compoway_f");
   profile.command_source = readExpectations(root, "command_source");
   profile.self_restart = readExpectations(root, "self_restart");
   CommunicationLoss& loss = profile.communication_loss;

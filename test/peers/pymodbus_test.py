@@ -26,7 +26,7 @@ except ImportError as error:
 
 # The MX2's numbers as in its manual; on the wire each is one less.
 RUN, DIRECTION, OPERATION, READY, RUNNING, AT_SPEED = 0x0001, 0x0002, 0x000F, 0x0011, 0x0013, 0x0014
-FREQUENCY, OUTPUT, CURRENT, TURNS = 0x0001, 0x1001, 0x1003, 0x1004  # F001 and d001 are two words each
+FREQUENCY, OUTPUT, TURNS = 0x0001, 0x1001, 0x1004  # F001 and d001 are two words each; between: current
 A001, A002 = 0x1201, 0x1202
 REGISTERS, COILS = 0x1300, 0x0060  # how many the server has; beyond them it answers exception 02
 
@@ -43,15 +43,16 @@ class Mx2:
     def __init__(self):
         drive = self
 
-        class Coils(ModbusSequentialDataBlock):
+        class Block(ModbusSequentialDataBlock):
+            """What the bus writes has its effect at once."""
+
             def setValues(self, address, values):
                 super().setValues(address, values)
                 drive.follow()
 
-        self.coils = Coils(0, [False] * COILS)
-        self.registers = ModbusSequentialDataBlock(0, [0] * REGISTERS)
-        self.registers.setValues(A001 - 1, [3])
-        self.registers.setValues(A002 - 1, [3])
+        self.coils = Block(0, [False] * COILS)
+        self.registers = Block(0, [0] * REGISTERS)
+        self.registers.values[A001 - 1] = self.registers.values[A002 - 1] = 3
         self.context = ModbusSlaveContext(co=self.coils, di=self.coils, hr=self.registers, ir=self.registers,
                                           zero_mode=True)
         self.follow()
@@ -71,7 +72,7 @@ class Mx2:
         self.coils.values[READY - 1] = True
         high, low = self.registers.getValues(FREQUENCY - 1, 2) if run else (0, 0)
         turns = 0 if not run else 2 if self.coil(DIRECTION) else 1
-        self.registers.setValues(OUTPUT - 1, [high, low, 150 if run else 0, turns])
+        self.registers.values[OUTPUT - 1:TURNS] = [high, low, 150 if run else 0, turns]
 
 
 @unittest.skipIf(MISSING, MISSING)
@@ -83,6 +84,7 @@ class Pymodbus(unittest.TestCase):
         os.environ['ROS_IP'] = '127.0.0.1'
         cls.master = subprocess.Popen([shutil.which('rosmaster'), '--core', '-p', str(master_port)],
                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        cls.addClassCleanup(cls.end_master)
         cls.drives = {1: Mx2(), 2: Mx2()}
         context = ModbusServerContext(slaves={node: drive.context for node, drive in cls.drives.items()}, single=False)
         port = free_port()
@@ -97,11 +99,11 @@ class Pymodbus(unittest.TestCase):
 
         init('pymodbus_test')
         cls.bench = Remote(belts(2, command_timeout=0.0), port='tcp://127.0.0.1:%d' % port, response_timeout=0.5)
+        cls.addClassCleanup(cls.bench.close)
         cls.bench.start_driver()
 
     @classmethod
-    def tearDownClass(cls):
-        cls.bench.close()
+    def end_master(cls):
         cls.master.terminate()
         cls.master.wait()
 
@@ -149,4 +151,4 @@ class Pymodbus(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    unittest.main()
+    unittest.main(warnings='ignore')  # rospy leaves sockets to the garbage collector

@@ -3,7 +3,7 @@
 
 // Four brands on one line, 9600 8E1: the one setting that suits them all.
 
-#include <gmock/gmock.h>
+#include <cmath>
 
 #include "virtual_bus.h"
 
@@ -11,8 +11,6 @@ namespace inverter_bus
 {
 namespace
 {
-using ::testing::HasSubstr;
-
 constexpr std::size_t BELT = 0;     // MX2
 constexpr std::size_t CRUSHER = 1;  // RX
 constexpr std::size_t PUMP = 2;     // VF-S15
@@ -266,7 +264,8 @@ TEST(MixedBus, oneThatIsSwitchedOffMakesNothingElseSlower)
       ASSERT_GT(before.back(), 50U) << refresh;
     }
     bus.world(std::string(NAMES[dead]) + " power off");
-    ASSERT_TRUE(bus.runUntil(5.0, [&] { return bus.status(dead).communication_error; })) << NAMES[dead];
+    // Six lost frames. The VF-S15 has no 08H, so that each waits a second for the late reply of the one before.
+    ASSERT_TRUE(bus.runUntil(8.0, [&] { return bus.status(dead).communication_error; })) << NAMES[dead];
     bus.run(1.0);
     bus.clearFrames();
     bus.run(WINDOW);
@@ -303,7 +302,7 @@ TEST(MixedBus, the7200MaNeverMissesTheBus)
   EXPECT_EQ(bus.motor("mixer", "alarms"), 0.0);
 }
 
-TEST(MixedBus, thirtyOneStationsComeOnlineAndStop)
+TEST(MixedBus, thirtyOneStationsComeOnlineAndAreServedInTurn)
 {
   const char* const drives[] = { "omron_mx2", "omron_rx", "toshiba_vfs15", "teco_7200ma" };
   std::string yaml = "port: /dev/virtual\nbaud_rate: 9600\nparity: even\nscan_list:\n";
@@ -326,6 +325,17 @@ TEST(MixedBus, thirtyOneStationsComeOnlineAndStop)
   EXPECT_TRUE(all);
   EXPECT_TRUE(bus.coordinator().report(bus.now()).bus.offline_nodes.empty());
   EXPECT_EQ(bus.line().counters().timeouts, 0U);
+  // A cycle of all takes 4 s here; the 7200MA, which must hear something every second, may make it longer for the others,
+  // but may not push them out.
+  bus.clearFrames();
+  bus.run(30.0);
+  for (unsigned node = 1; node <= 31; ++node)
+  {
+    const char* const fast[] = { " 03 10 00", " 03 10 00", " 03 FD 00", " 03 00 00" };
+    char station[4];
+    std::snprintf(station, sizeof station, "%02X", node);
+    EXPECT_GE(bus.count(station + std::string(fast[node % 4])), 3U) << "station " << node;
+  }
   const bus::Answer answer = bus.wait(bus.stop(std::nullopt), 60.0);
   EXPECT_TRUE(answer.success) << answer.message;
   EXPECT_EQ(bus.count("00"), 0U);

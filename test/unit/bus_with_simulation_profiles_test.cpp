@@ -245,7 +245,7 @@ TEST(ProfilesAlone, aUsersOwnProfileReadsAndWritesItsParameters)
   EXPECT_EQ(before.unit, "s");
   const bus::Answer written = bus.wait(bus.writeParameter(0, "ramp_up", 2.5, false));
   EXPECT_TRUE(written.success) << written.message;
-  EXPECT_THAT(bus.world("motor get F002"), HasSubstr("ram=250"));
+  EXPECT_THAT(bus.world("motor get F002"), HasSubstr("ram=2.50"));
   EXPECT_EQ(bus.wait(bus.writeParameter(0, "ramp_up", 0.0, false)).error_id, bus::ERROR_OUT_OF_RANGE);
   EXPECT_FALSE(bus.wait(bus.readParameter(0, "F002")).success) << "a name of another profile";
   // It has no Enter command, so that nothing can be made to last.
@@ -262,7 +262,7 @@ TEST(ProfilesAlone, aUsersOwnProfileWithAMistakeStopsTheBusBeforeItStarts)
   }
   catch (const drive::ConfigurationError& error)
   {
-    EXPECT_THAT(error.what(), HasSubstr(file.path() + ":16: key 'points.run.coil': value '0x10000'"));
+    EXPECT_THAT(error.what(), HasSubstr(file.path() + ":14: key 'points.run.coil': value '0x10000'"));
   }
 }
 }  // namespace

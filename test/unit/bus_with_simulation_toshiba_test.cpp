@@ -178,6 +178,50 @@ TEST(Toshiba, aBrownOutWhileItRunsLocksItAndNothingGivesRunBack)
   }
 }
 
+TEST(Toshiba, aBrownOutUnderAChangingVelocityGivesNoRunBackEither)
+{
+  for (const char* yaml : { BLOCK, DIRECT })
+  {
+    for (const char* harm : { "power_cycle 0.02", "power_cycle 0.3", "power_cycle 2.0", "sto on" })
+    {
+      VirtualBus bus(yaml);
+      settle(bus);
+      for (int i = 0; i < 100; ++i)
+      {
+        bus.at(0.1 * i, [&bus, i] { bus.command(0, 10.0 + 0.1 * i); });
+      }
+      bus.run(3.0);
+      ASSERT_GT(bus.motor("pump", "frequency"), 0.0);
+      bus.world(std::string("pump ") + harm);
+      bus.run(0.05);
+      bus.clearFrames();
+      bus.run(6.0);
+      EXPECT_EQ(runFrames(bus), 0U) << harm;
+      EXPECT_EQ(bus.motor("pump", "frequency"), 0.0) << harm;
+      EXPECT_TRUE(bus.status(0).locked) << harm;
+    }
+  }
+}
+
+TEST(Toshiba, aLostExchangeEndsTheProofOfRunUntilTheDriveHasShownIt)
+{
+  VirtualBus bus(BLOCK);
+  settle(bus);
+  bus.stream(0, 20.0, 0.1, 10.0);
+  bus.run(3.0);
+  bus.world("pump lost_reply count 1");
+  bus.runUntil(1.0, [&] { return bus.line().counters().timeouts > 0; });
+  bus.clearFrames();
+  bus.run(3.0);
+  const auto requests = bus.requests();
+  const auto repeats = [](const std::string& text) { return text.compare(0, 5, "01 17") == 0; };
+  const auto proof = std::find(requests.begin(), requests.end(), "01 03 FA 00 00 01");
+  const auto first = std::find_if(requests.begin(), requests.end(), repeats);
+  ASSERT_NE(first, requests.end()) << "the words are repeated again once RUN is proven";
+  EXPECT_LT(proof - requests.begin(), first - requests.begin());
+  EXPECT_FALSE(bus.status(0).locked);
+}
+
 TEST(Toshiba, configureBlockWritesTheSlotsOnceAndThenUsesThem)
 {
   std::string yaml = DIRECT;

@@ -405,7 +405,7 @@ TEST(DriveShippedProfiles, The3G3JeHasTheLineOfItsManual)
   EXPECT_DOUBLE_EQ(profile.communication_loss.assumed_timeout, 0.0);
   ASSERT_EQ(profile.identity.size(), 1U);
   EXPECT_EQ(profile.identity[0].model, "3G3JE");
-  EXPECT_EQ(shipped("omron_3g3je").exceptionText(0x1103), "response 1103: start address out of range");
+  EXPECT_EQ(shipped("omron_3g3je").exceptionText(0x1103), "response code 1103: start address out of range");
 }
 
 TEST(DriveShippedProfiles, TheWj200HasTheLineOfItsManual)

@@ -59,6 +59,9 @@ struct Constant
   std::string unconfirmed;
   /// Which page of which manual holds it.
   std::string where;
+  /// Where its value stands ("file:line" or the scan list entry) and the key, for messages.
+  std::string place;
+  std::string key;
 };
 
 /// One value inside a drive: where it lies, how many words it has, what one count means.

@@ -738,7 +738,8 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   if (timeout && ever_answered_)
   {
     const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
-    view.serve_by = last_reply_ + std::max(latest, Duration::zero());
+    // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
+    view.serve_by = last_reply_ + std::max(latest, *timeout / 2);
   }
   return view;
 }

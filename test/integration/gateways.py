@@ -93,7 +93,7 @@ class ModbusGateway(Gateway):
     """A Modbus TCP gateway: the frame without its header goes onto the line, with a check sum."""
 
     def __init__(self, link):
-        self.before_answer = None  # called with the number, request and reply of each exchange; gives what goes before it
+        self.before_answer = None  # called with number, request and reply; gives what goes before the reply
         self.strangers = 0         # how often something went before an answer
         super().__init__(link)
 

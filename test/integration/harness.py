@@ -301,7 +301,7 @@ class Bench:
             entry = self.diagnostics.get(name)
             return entry if entry and all(word in entry.message for word in words) else None
 
-        return wait_for(said, lambda: '/diagnostics of %s with %s; last: %s' % (name, words, self.diagnostics.get(name)))
+        return wait_for(said, lambda: '/diagnostics of %s with %s: %s' % (name, words, self.diagnostics.get(name)))
 
     def value(self, name, key):
         """What /diagnostics last said under a key; '' before that."""

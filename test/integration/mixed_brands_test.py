@@ -45,7 +45,7 @@ class Brands(unittest.TestCase):
         for name, inverter in self.bench.inverters.items():
             if inverter.status.faulted:
                 answer = inverter.reset()
-                self.assertTrue(answer.success, answer.message)
+                self.assertTrue(answer.success, '%s: %s' % (name, answer.message))
         self.bench.unlock()
         for inverter in self.bench.inverters.values():
             inverter.wait(lambda s: not s.running and not s.run_command and not s.faulted, 'at rest')
@@ -297,7 +297,7 @@ class TwoOfOneBrand(Brands):
         self.bench.unlock('mixer_1')
 
     def startMixer2(self):
-        """Another master sets it running: 0000H := 1 and 0001H := 20.00 Hz, until its frame meets none of the node's."""
+        """Another master sets it running: 0000H := 1 and 0001H := 20.00 Hz, until its frame met no other."""
         def sent():
             return int(self.bench.simulate('bus show').split('foreign=')[1])
 
@@ -363,7 +363,7 @@ class TwoOfOneBrand(Brands):
         self.assertEqual([frame.text for frame in broadcasts], [BROADCAST_STOP])
         writes = [frame for frame in sent if frame.bytes[1] == 0x10 and frame.time >= broadcasts[0].time]
         self.assertEqual(writes[0].text, BROADCAST_STOP, 'the broadcast goes first')
-        self.assertEqual(sorted({frame.station for frame in writes[1:]}), ['1', '2'], 'then each is stopped for certain')
+        self.assertEqual(sorted({frame.station for frame in writes[1:]}), ['1', '2'], 'then each is stopped')
         following = next(frame for frame in sent if frame.time > broadcasts[0].time)
         # From end to end. Without the silence after a broadcast it would be the next stop's 12.6 ms and 3.5 characters.
         self.assertGreater(following.time - broadcasts[0].time, 0.020)

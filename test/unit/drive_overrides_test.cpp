@@ -179,16 +179,25 @@ TEST(DriveOverrides, AConstantIsGivenInItsSectionToo)
   }
 }
 
-TEST(DriveOverrides, AConstantThatIsWrongIsRefused)
+TEST(DriveOverrides, AConstantThatIsWrongIsRefusedByItsPlaceAndName)
 {
-  EXPECT_THAT(refusal("teco_7200ma", overrides("{reverse_word: 2.5}")),
-              AllOf(HasSubstr("sequences.reverse"), HasSubstr("the constant is 2.5: allowed: an integer")));
-  EXPECT_THAT(refusal("teco_7200ma", overrides("{reverse_word: two}")),
-              AllOf(HasSubstr("reverse_word"), HasSubstr("value 'two'")));
+  struct Wrong
+  {
+    const char* yaml;
+    const char* key;
+    const char* says;
+  };
+  for (const Wrong& wrong : { Wrong{ "{reverse_word: 2.5}", "key 'constants.reverse_word", "allowed: an integer" },
+                              Wrong{ "{reverse_word: two}", "key 'constants.reverse_word", "value 'two'" },
+                              Wrong{ "{frequency_scale: 0}", "key 'constants.frequency_scale", "a number above 0" },
+                              Wrong{ "{monitor_base: -1}", "key 'constants.monitor_base", "from 0 to 65535" },
+                              Wrong{ "{reverse: 2}", "key 'reverse'", "unknown key" } })
+  {
+    EXPECT_THAT(refusal("teco_7200ma", overrides(wrong.yaml)),
+                AllOf(StartsWith("bus.yaml:7: scan_list[1] 'fan': "), HasSubstr(wrong.key), HasSubstr(wrong.says)))
+        << wrong.yaml;
+  }
   EXPECT_THAT(refusal("teco_7200ma", overrides("{reverse_word: 0x10000}")), HasSubstr("allowed: 0 to 65535"));
-  EXPECT_THAT(refusal("teco_7200ma", overrides("{frequency_scale: 0}")), HasSubstr("allowed: a number above 0"));
-  EXPECT_THAT(refusal("teco_7200ma", overrides("{monitor_base: -1}")), HasSubstr("an integer from 0 to 65535"));
-  EXPECT_THAT(refusal("teco_7200ma", overrides("{reverse: 2}")), HasSubstr("'reverse'"));
 }
 
 TEST(DriveOverrides, AnExplanationIsNoValue)

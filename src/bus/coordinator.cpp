@@ -299,6 +299,14 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     // After a lost 17H that shape is barred for a while, the plain read is not.
     current.request = line_.mayAsk(both) ? both : current.request;
   }
+  std::optional<drive::ReadBlock> variant = block;
+  const bool resync = inverter.loopback.usable() && inverter.drive.loopback(inverter.config.node, 0);
+  while (!resync && variant && !line_.mayAsk(current.request))
+  {
+    // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
+    variant = inverter.drive.variantOf(*variant);
+    current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
+  }
   current.request = inverter.prepared(current.request);
   return current;
 }

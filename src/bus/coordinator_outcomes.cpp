@@ -307,7 +307,6 @@ void Coordinator::doneStep(TimePoint now, const Current& current)
   {
     // It executes without a reply and is deaf for a while: neither a time-out nor an offline drive.
     inverter.refresh_not_before = now + running.job->pause();
-    inverter.settings.connectAgain();
   }
 }
 
@@ -327,6 +326,11 @@ void Coordinator::noteJobEnd(Inverter& inverter, const Job& job, const Answer& r
       // Leaving the setup area may have made the drive forget what it was told at connect.
       inverter.settings.connectAgain();
     }
+  }
+  const auto* reset = dynamic_cast<const ResetJob*>(&job);
+  if (reset != nullptr && reset->resetting())
+  {
+    inverter.settings.connectAgain();
   }
   if (dynamic_cast<const ConfigureBlockJob*>(&job) != nullptr)
   {

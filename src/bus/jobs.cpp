@@ -13,6 +13,7 @@ namespace
 constexpr double VERIFY_PERIOD_S = 0.1;
 constexpr double BUSY_PERIOD_S = 0.05;
 constexpr unsigned VERIFICATIONS_BEFORE_REPEAT = 10;
+constexpr unsigned MOST_RESENT = 2;
 }  // namespace
 
 Job::Job(const drive::Drive& drive, std::uint8_t station, CommandKind kind)
@@ -88,8 +89,41 @@ wire::Request ResetJob::next()
   {
     return drive_.read(station_, verifyBlock());
   }
+  if (phase_ == Phase::CheckRestart)
+  {
+    return drive_.read(station_, drive_.blockOf({ "restarted" }));
+  }
   begun_ = true;
   return drive_.command(station_, drive_.sequence("reset")->steps[step_]);
+}
+
+Job::Progress ResetJob::afterStep()
+{
+  const auto& steps = drive_.sequence("reset")->steps;
+  pause_ = seconds(steps[step_].pause);
+  const bool silent = !steps[step_].expects_reply;
+  ++step_;
+  if (silent && drive_.reports("restarted"))
+  {
+    phase_ = Phase::CheckRestart;
+    return Progress::GoesOn;
+  }
+  phase_ = step_ < steps.size() ? Phase::Steps : Phase::Verify;
+  return Progress::GoesOn;
+}
+
+/// A step without a reply that got lost on the line is sent again; one that made the drive start anew never is.
+Job::Progress ResetJob::afterRestartCheck(const wire::Reply& reply)
+{
+  drive::Monitor monitor;
+  drive_.decode(drive_.blockOf({ "restarted" }), reply.pdu, monitor);
+  if (!monitor.restarted.value_or(true) && resent_ < MOST_RESENT)
+  {
+    ++resent_;
+    --step_;
+  }
+  phase_ = step_ < drive_.sequence("reset")->steps.size() ? Phase::Steps : Phase::Verify;
+  return Progress::GoesOn;
 }
 
 Job::Progress ResetJob::done(const wire::Reply& reply)
@@ -116,15 +150,9 @@ Job::Progress ResetJob::done(const wire::Reply& reply)
       phase_ = Phase::Steps;
       return Progress::GoesOn;
     case Phase::Steps:
-    {
-      const auto& steps = drive_.sequence("reset")->steps;
-      pause_ = seconds(steps[step_].pause);
-      if (++step_ >= steps.size())
-      {
-        phase_ = Phase::Verify;
-      }
-      return Progress::GoesOn;
-    }
+      return afterStep();
+    case Phase::CheckRestart:
+      return afterRestartCheck(reply);
     default:
       drive_.decode(verifyBlock(), reply.pdu, monitor);
       if (!monitor.faulted)

@@ -105,6 +105,22 @@ std::vector<ReadBlock> Drive::slowBlocksBeside(const ReadBlock& block) const
   return planBeside(profile_, block, true);
 }
 
+std::optional<ReadBlock> Drive::variantOf(const ReadBlock& block) const
+{
+  ReadBlock variant = block;
+  if (!block.chosen.empty())
+  {
+    --variant.count;
+    return variant.count < LEAST_WORDS ? std::nullopt : std::optional<ReadBlock>(variant);
+  }
+  ++variant.count;
+  const unsigned last = block.number + block.count;
+  const bool spanned = std::any_of(profile_.register_spans.begin(), profile_.register_spans.end(),
+                                   [&](const auto& span) { return span.first <= block.number && last <= span.second; });
+  const bool possible = block.space == Space::Register && spanned && variant.count <= profile_.read_registers;
+  return possible ? std::optional<ReadBlock>(variant) : std::nullopt;
+}
+
 bool Drive::fitsBlockWrite(const std::vector<Word>& words) const
 {
   if (!profile_.block || words.size() != profile_.block->select.size())

@@ -188,7 +188,9 @@ public:
   Bytes frame(const Request& request) override
   {
     const std::string head = compoway::nodeOf(request) + SUB_ADDRESS + "0";
-    Bytes frame{ compoway::STX };
+    Bytes frame;
+    frame.reserve(head.size() + request.pdu.size() + 3);
+    frame.push_back(compoway::STX);
     frame.insert(frame.end(), head.begin(), head.end());
     frame.insert(frame.end(), request.pdu.begin(), request.pdu.end());
     frame.push_back(compoway::ETX);

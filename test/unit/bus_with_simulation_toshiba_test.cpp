@@ -290,6 +290,41 @@ TEST(Toshiba, tripIsShownWithItsReasonAndResetWithoutAReplyIsNoError)
   EXPECT_EQ(bus.count("01 06 FA 00 C0 00"), 1U);
 }
 
+TEST(Toshiba, aResetThatGotLostIsSentAgain)
+{
+  VirtualBus bus(DIRECT);
+  settle(bus);
+  bus.world("pump trip 16");
+  bus.run(2.0);
+  bus.clearFrames();
+  bus.world("pump lost_request count 1 function 6");
+  const auto answer = bus.wait(bus.reset(0));
+  EXPECT_TRUE(answer.success) << answer.message;
+  EXPECT_EQ(bus.count(RESET), 2U);
+  EXPECT_EQ(bus.motor("pump", "tripped"), 0.0);
+}
+
+TEST(Toshiba, aLostReplyDoesNotLeaveItUnwatched)
+{
+  for (const char* yaml : { DIRECT, BLOCK })
+  {
+    VirtualBus bus(yaml);
+    settle(bus);
+    bus.world("pump lost_reply count 1 function 3");
+    bus.runUntil(2.0, [&] { return bus.line().counters().timeouts > 0; });
+    const TimePoint lost = bus.now();
+    EXPECT_TRUE(bus.runUntil(0.5, [&] { return bus.status(0).stamp > lost; })) << "rule 3.9 bars one shape only";
+  }
+}
+
+TEST(Toshiba, isOfflineSoonAfterItWasSwitchedOff)
+{
+  VirtualBus bus(DIRECT);
+  settle(bus);
+  bus.world("pump power off");
+  EXPECT_TRUE(bus.runUntil(3.0, [&] { return bus.status(0).communication_error; }));
+}
+
 TEST(Toshiba, readsItsEightTripsNewestFirst)
 {
   VirtualBus bus(DIRECT);

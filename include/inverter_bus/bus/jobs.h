@@ -82,15 +82,20 @@ private:
   {
     CheckRun,
     Steps,
+    /// After a step that has no reply: has it arrived?
+    CheckRestart,
     Verify
   };
   const drive::ReadBlock& verifyBlock() const;
+  Progress afterStep();
+  Progress afterRestartCheck(const wire::Reply& reply);
 
   Phase phase_;
   std::size_t step_ = 0;
   bool run_was_on_ = false;
   bool begun_ = false;
   unsigned still_tripped_ = 0;
+  unsigned resent_ = 0;
 };
 
 class ReadFaultsJob : public Job

@@ -107,6 +107,9 @@ public:
               const Ratings& ratings = Ratings()) const;
   /// One read for \p fields, which must lie close enough together.
   ReadBlock blockOf(const std::vector<std::string>& fields) const;
+  /// The same read with another number of words, so that a late reply to one can't be taken for the answer to the other;
+  /// empty: there is none. Values beyond a shorter one stay empty.
+  std::optional<ReadBlock> variantOf(const ReadBlock& block) const;
   /// The drive can tell whether a RUN of the bus is on.
   bool tellsRun() const;
 

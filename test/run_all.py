@@ -203,8 +203,9 @@ def main():
     passed, failed, start = 0, 0, time.monotonic()
     for group, programs in groups.items():
         chosen = [program for program in programs(build) if arguments.match in program.name]
-        # Whole nodes on a simulated line keep real time: one at a time.
-        workers = os.cpu_count() or 1 if group in ('unit', 'lint') else 1
+        # Whole nodes on a simulated line keep real time and mostly wait: two at a time. Peers share names and ports.
+        cores = os.cpu_count() or 1
+        workers = {'unit': cores, 'lint': cores, 'ros': min(2, cores)}.get(group, 1)
         with concurrent.futures.ThreadPoolExecutor(workers) as pool:
             for program, outcome in zip(chosen, pool.map(lambda program: run(program, logs), chosen)):
                 report(program, outcome)

@@ -30,7 +30,8 @@ std::string readName(const Section& entry)
   const std::string allowed = "a letter, then letters, digits and _; not " + join(RESERVED_NAMES);
   entry.require("name", allowed);
   std::string name = entry.text("name", "");
-  if (!std::regex_match(name, GRAPH_NAME))
+  constexpr std::size_t LONGEST_NAME = 255;
+  if (name.size() > LONGEST_NAME || !std::regex_match(name, GRAPH_NAME))
   {
     entry.fail("name", "is no legal ROS name", allowed);
   }

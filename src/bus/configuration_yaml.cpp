@@ -23,6 +23,7 @@ namespace
 constexpr int DEEPEST = 20;
 /// More than any scan list; a few nested aliases can stand for billions of values.
 constexpr int MOST_VALUES = 100000;
+constexpr std::size_t LONGEST_WORD = 100;
 
 /// Reads scalars as roslaunch (YAML 1.1) does, so that a file means the same here and on the parameter server.
 class ValueReader
@@ -53,7 +54,7 @@ public:
 
   [[noreturn]] void fail(const YAML::Mark& mark, const std::string& problem) const
   {
-    throw drive::ConfigurationError(path_ + ":" + std::to_string(mark.line + 1) + ": " + problem);
+    throw drive::ConfigurationError(drive::oneLine(path_ + ":" + std::to_string(mark.line + 1) + ": " + problem));
   }
 
 private:
@@ -61,7 +62,9 @@ private:
   {
     const std::string& text = node.Scalar();
     Value value;
-    if (node.Tag() == "!" || !(readWord(text, value) || readInteger(text, value) || readNumber(text, value)))
+    // No number or word of YAML is that long, and std::regex recurses once per character.
+    const bool plain = node.Tag() != "!" && text.size() <= LONGEST_WORD;
+    if (!plain || !(readWord(text, value) || readInteger(text, value) || readNumber(text, value)))
     {
       value.type = Value::Type::Text;
       value.text = text;
@@ -213,6 +216,10 @@ Value readYamlFile(const std::string& path)
   std::ostringstream text;
   text << file.rdbuf();
   ValueReader reader(path);
+  if (text.str().size() > drive::LARGEST_YAML || drive::yamlDepth(text.str()) > drive::DEEPEST_YAML)
+  {
+    throw drive::ConfigurationError(path + ": is larger than 1 MiB or nested too deeply; allowed: a scan list");
+  }
   try
   {
     return reader.read(YAML::Load(text.str()), 0);

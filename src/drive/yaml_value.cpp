@@ -8,11 +8,13 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <system_error>
 
 #include <yaml-cpp/yaml.h>
 
+#include "inverter_bus/drive/profile.h"
 #include "numbers.h"
 
 namespace inverter_bus
@@ -25,7 +27,6 @@ namespace
 constexpr int MAX_DEPTH = 20;
 /// More than any profile; a few nested aliases can stand for billions of values.
 constexpr std::size_t MAX_VALUES = 200000;
-constexpr std::uintmax_t MAX_FILE_SIZE = 4194304;  // 4 MiB
 
 class Converter
 {
@@ -78,9 +79,17 @@ private:
     }
   }
 
+  /// 0x21 and 33 are the same key.
+  static std::string canonical(const std::string& key)
+  {
+    const auto number = parseInteger(key);
+    return number ? std::to_string(*number) : key;
+  }
+
   void convertMap(const YAML::Node& node, const std::string& path, int depth, YamlValue& value)
   {
     value.kind = YamlValue::Kind::Map;
+    std::set<std::string> seen;
     for (auto entry = node.begin(); entry != node.end() && !failed_; ++entry)
     {
       const std::string key_where = where(entry->first.Mark());
@@ -92,7 +101,7 @@ private:
       const std::string key = entry->first.Scalar();
       std::string key_path = path;
       key_path.append(path.empty() ? "" : ".").append(key);
-      if (value.find(key) != nullptr)
+      if (!seen.insert(canonical(key)).second)
       {
         problems_.add(key_where, key_path, "duplicate key: allowed once");
         continue;
@@ -139,6 +148,28 @@ void YamlValue::erase(const std::string& key)
                 entries.end());
 }
 
+unsigned yamlDepth(const std::string& yaml)
+{
+  unsigned flow = 0;
+  unsigned deepest_flow = 0;
+  unsigned blocks = 0;
+  unsigned deepest_blocks = 0;
+  bool at_line_start = true;
+  for (const char c : yaml)
+  {
+    const bool opens = c == '[' || c == '{';
+    flow += opens ? 1 : 0;
+    flow -= (c == ']' || c == '}') && flow > 0 ? 1 : 0;
+    deepest_flow = std::max(deepest_flow, flow);
+    // Each space of indentation, and each "- " or "? " on one line, may open a block.
+    at_line_start = c == '\n' || (at_line_start && (c == ' ' || c == '-' || c == '?' || c == '\t'));
+    blocks = c == '\n' ? 0 : blocks + (at_line_start ? 1 : 0);
+    deepest_blocks = std::max(deepest_blocks, blocks);
+  }
+  // Two characters at least for each block.
+  return std::max(deepest_flow, deepest_blocks / 2);
+}
+
 bool sameKey(const std::string& a, const std::string& b)
 {
   if (a == b)
@@ -154,6 +185,11 @@ std::optional<YamlValue> parseYaml(const std::string& text, const std::string& s
                                    Problems& problems)
 {
   Converter converter(source, with_lines, problems);
+  if (yamlDepth(text) > DEEPEST_YAML)
+  {
+    problems.add(source, "", "nested too deeply");
+    return std::nullopt;
+  }
   try
   {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
@@ -182,9 +218,9 @@ std::optional<std::string> readTextFile(const std::string& path, Problems& probl
     return std::nullopt;
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > MAX_FILE_SIZE)
+  if (error || size > LARGEST_YAML)
   {
-    problems.add(path, "", error ? "cannot be read: " + error.message() : "is larger than 4 MiB");
+    problems.add(path, "", error ? "cannot be read: " + error.message() : "is larger than 1 MiB");
     return std::nullopt;
   }
   errno = 0;

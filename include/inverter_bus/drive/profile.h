@@ -23,6 +23,18 @@ public:
   using std::runtime_error::runtime_error;
 };
 
+/// \p text as one line of printable characters and of bearable length, whatever a YAML text contains; for messages.
+std::string oneLine(const std::string& text);
+
+/// How deep flow collections, blocks and lists of \p yaml are nested at most, without parsing it: a parser that recurses
+/// must not be fed more than its stack holds.
+unsigned yamlDepth(const std::string& yaml);
+
+/// More text than any profile or scan list has.
+constexpr std::size_t LARGEST_YAML = 1048576;
+/// Deeper than any profile or scan list.
+constexpr unsigned DEEPEST_YAML = 100;
+
 /// What an address counts.
 enum class Space
 {

@@ -13,7 +13,7 @@ namespace bus
 namespace
 {
 // A velocity unit that newer and newer targets keep going makes room for others after so many frames per inverter.
-constexpr unsigned MOST_FRAMES_PER_UNIT = 8;
+constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 
 bool alive(const wire::Reply& reply)
 {

@@ -55,6 +55,17 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = inverter.wrongDrive();
     return judged.error_id;
   }
+  else if (!inverter.known())
+  {
+    // Silence counts from the first status, not from a stop that was confirmed before it.
+    judged.error_id = ERROR_LOCKED;
+  }
+  else if (inverter.reset_active)
+  {
+    judged.error_id = ERROR_LOCKED;
+    judged.text = "a reset of the drive is under way";
+    return judged.error_id;
+  }
   else if (inverter.inSetup())
   {
     judged.error_id = ERROR_LOCKED;
@@ -179,7 +190,8 @@ void Coordinator::applyVelocities(TimePoint now, const VelocityCommand& command,
     }
     if (moves)
     {
-      inverter.velocity_frames = 0;
+      // A unit that is under way goes on counting, whatever comes newly into it.
+      inverter.velocity_frames = scheduler_->velocityWaits(inverter.index) ? inverter.velocity_frames : 0;
       waiting.inverters.push_back(inverter.index);
     }
   }

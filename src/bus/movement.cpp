@@ -15,6 +15,9 @@ namespace
 const std::string FORWARD = "forward";
 const std::string REVERSE = "reverse";
 const std::string STOP = "stop";
+const std::string FREQUENCY = "frequency";
+// A newer frequency goes before direction and RUN, but a stream of them must not keep these waiting.
+constexpr unsigned MOST_FREQUENCIES = 2;
 
 JudgedVelocity refused(std::uint16_t error_id, const std::string& text)
 {
@@ -90,6 +93,7 @@ JudgedVelocity Movement::judge(double velocity) const
 
 void Movement::aim(const Target& target)
 {
+  frequencies_told_ = active_ ? frequencies_told_ : 0;
   target_ = target;
   // A second 0 leaves the question open whether the first one has taken RUN off.
   zero_unverified_ = target.zero && zero_unverified_;
@@ -155,6 +159,7 @@ bool Movement::startsWith(const drive::Word& word) const
 
 std::optional<Write> Movement::next() const
 {
+  std::optional<Write> newer_frequency;
   for (const drive::Word& word : wantedWords())
   {
     if (isConfirmed(word))
@@ -166,9 +171,14 @@ std::optional<Write> Movement::next() const
     write.raw = word.second;
     write.starts = startsWith(word);
     write.request = drive_.write(config_.node, write.point, write.raw);
-    return write;
+    if (word.first != FREQUENCY || frequencies_told_ < MOST_FREQUENCIES)
+    {
+      return write;
+    }
+    // A stream that changes faster than a frame takes must not keep direction and RUN waiting for ever.
+    newer_frequency = write;
   }
-  return std::nullopt;
+  return newer_frequency;
 }
 
 std::optional<Write> Movement::nextCombined(const std::optional<drive::ReadBlock>& read) const
@@ -236,6 +246,7 @@ void Movement::confirmedWord(const drive::Word& word, TimePoint now)
     return;
   }
   words_[word.first] = word.second;
+  frequencies_told_ += word.first == FREQUENCY ? 1 : 0;
   if (stop_values_.count(word.first) != 0)
   {
     run_confirmed_ = startsWith(word);
@@ -289,6 +300,7 @@ void Movement::stopped(TimePoint now)
 {
   confirmed_target_.reset();
   words_.clear();
+  frequencies_told_ = 0;
   run_changed_at_ = now;
   run_command_ = false;
   run_possible_ = false;
@@ -299,6 +311,7 @@ void Movement::stopped(TimePoint now)
 void Movement::forgetWords()
 {
   words_.clear();
+  frequencies_told_ = 0;
   run_confirmed_ = false;
 }
 

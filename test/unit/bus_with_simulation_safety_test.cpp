@@ -42,6 +42,30 @@ TEST(Safety, runsWhenCommandedAndStopsWhenCommandsEnd)
   EXPECT_EQ(bus.motor("belt", "frequency"), 0.0);
 }
 
+TEST(Safety, aStreamThatChangesFasterThanAFrameTakesStartsTheMotorAndDelaysNobody)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+baud_rate: 9600
+scan_list:
+  - {name: belt_1, node: 1, drive: omron_mx2}
+  - {name: belt_2, node: 2, drive: omron_mx2}
+)");
+  bus.settleIn();
+  for (int i = 0; i < 500; ++i)
+  {
+    bus.at(0.01 * i, [&bus, i] { bus.command(0, 10.0 + 0.02 * i); });
+  }
+  bus.run(0.5);
+  EXPECT_EQ(bus.motor("belt_1", "run_coil"), 1);
+  bus.command(1, 20.0);
+  bus.run(0.49);
+  EXPECT_EQ(bus.motor("belt_2", "run_coil"), 1);
+  bus.run(3.0);
+  EXPECT_LT(bus.now() - bus.status(0).stamp, seconds(2.0));
+  EXPECT_LT(bus.now() - bus.status(1).stamp, seconds(2.0));
+}
+
 TEST(Safety, nothingRunsAtStartUpWithALiveStream)
 {
   VirtualBus bus(ONE_BELT);

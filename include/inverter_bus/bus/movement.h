@@ -114,6 +114,8 @@ private:
   /// The last one that the drive has confirmed.
   std::optional<Target> confirmed_target_;
   bool active_ = false;
+  /// Frequencies that the drive has confirmed since this command (or a stream of them) began.
+  unsigned frequencies_told_ = 0;
   bool run_command_ = false;
   bool run_possible_ = false;
   bool run_confirmed_ = false;

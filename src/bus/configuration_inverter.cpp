@@ -102,7 +102,7 @@ drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config,
   catch (const drive::ConfigurationError& error)
   {
     const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + config.drive + "': ";
-    throw drive::ConfigurationError(place + error.what());
+    throw drive::ConfigurationError(drive::oneLine(place + error.what()));
   }
 }
 

@@ -420,6 +420,9 @@ std::string Drive::decodeModel(const wire::Bytes& reply) const
   constexpr std::size_t MODEL = 10;  // characters, padded with spaces
   std::string model = responseData(READ_ATTRIBUTES, reply).value_or("").substr(0, MODEL);
   model.erase(model.find_last_not_of(' ') + 1);
+  // ROS messages want UTF-8, and a damaged byte is no letter.
+  std::replace_if(
+      model.begin(), model.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return model;
 }
 }  // namespace drive

@@ -16,6 +16,7 @@
 
 #include "inverter_bus/drive/profile.h"
 #include "numbers.h"
+#include "yaml_measure.h"
 
 namespace inverter_bus
 {
@@ -192,13 +193,13 @@ std::optional<YamlValue> parseYaml(const std::string& text, const std::string& s
   }
   try
   {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() != 1)
+    const int documents = countDocuments(text);
+    if (documents != 1)
     {
-      problems.add(source, "", documents.empty() ? "is empty" : "holds several YAML documents: allowed: one");
+      problems.add(source, "", documents == 0 ? "is empty" : "holds several YAML documents: allowed: one");
       return std::nullopt;
     }
-    return converter.convert(documents.front(), "", 0);
+    return converter.convert(YAML::Load(text), "", 0);
   }
   catch (const YAML::Exception& exception)
   {

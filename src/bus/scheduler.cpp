@@ -183,7 +183,9 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
     return pick;
   }
   ++epoch_;
-  deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : 0;
+  // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
+  const bool goes_on = pick.what == Pick::What::Refresh && half_refreshed_ == pick.inverter;
+  deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
   if (pick.what == Pick::What::Stop)
   {
     bookStop(pick, views);

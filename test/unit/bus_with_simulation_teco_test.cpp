@@ -217,6 +217,35 @@ TEST(Teco, theAlarmNeverComesWhileTheBudgetAllowsIt)
   }
 }
 
+TEST(Teco, commandsGetThroughWhereSomeDriveIsAlwaysDue)
+{
+  std::string yaml = R"(
+port: /dev/virtual
+baud_rate: 9600
+parity: even
+defaults:
+  drive: teco_7200ma
+  confirm: [run_forward, fault_reset, frequency_scale, monitor_layout, fault_coding]
+  overrides: {reverse_word: 2, monitor_base: 0x0020}
+scan_list:
+)";
+  for (int node = 1; node <= 7; ++node)
+  {
+    yaml += "  - {name: mixer_" + std::to_string(node) + ", node: " + std::to_string(node) + "}\n";
+  }
+  VirtualBus bus(yaml);
+  bus.settleIn(15.0);
+  for (std::size_t index = 0; index < 7; ++index)
+  {
+    bus.stream(index, 10.0 + static_cast<double>(index), 0.1, 8.0);
+  }
+  bus.run(6.0);
+  for (int node = 1; node <= 7; ++node)
+  {
+    EXPECT_EQ(bus.motor("mixer_" + std::to_string(node), "run_command"), 1.0) << node;
+  }
+}
+
 TEST(Teco, theBudgetSaysWhenADriveCantBeServedInTime)
 {
   std::string yaml = "port: /dev/virtual\nbaud_rate: 1200\nparity: even\ndefaults: {drive: teco_7200ma}\nscan_list:\n";

@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bus_fuzz_checker.h"
+
+// What may move: locks, commands, RUN frames, stops.
+
+namespace inverter_bus
+{
+namespace fuzz
+{
+namespace
+{
+constexpr double SHORTEST_SILENCE_S = 0.5;  // contract, rule 4.2
+constexpr double LONGEST_SILENCE_S = 5.0;
+constexpr double TOLERANCE_S = 1e-3;
+// A 3G3JE wants 5 ms of silence between the decision and the first byte.
+constexpr double QUIET_S = 0.006;
+constexpr double TURNAROUND_S = 0.03;  // after a broadcast, with a margin
+constexpr double ZERO_BOUND_EXCHANGES = 8.0;
+
+std::string text(double value)
+{
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3f", value);
+  return buffer;
+}
+}  // namespace
+
+// --- locks -----------------------------------------------------------------------------------------------------------------
+
+void Checker::forbid(TimePoint now, Lane& lane)
+{
+  lane.permit_off_at = lane.permit ? now : lane.permit_off_at;
+  lane.permit = false;
+  lane.settled = false;
+  lane.fed.reset();
+}
+
+/// Everybody must return to neutral.
+void Checker::lockUp(TimePoint now, Lane& lane, bool by_stop)
+{
+  forbid(now, lane);
+  ++lane.lock;
+  lane.locked_at = now;
+  lane.open_at.reset();
+  lane.needs_stop_reply = lane.needs_stop_reply || by_stop;
+  lane.stop_under_way = lane.stopping && !lane.due;
+  for (auto& stream : lane.streams)
+  {
+    stream.second.neutral = false;
+  }
+}
+
+void Checker::tryOpen(TimePoint now, Lane& lane)
+{
+  if (!lane.open_at && !lane.needs_status && !lane.needs_stop_reply)
+  {
+    // The silence counts from the stop where there was one, otherwise from the status.
+    const TimePoint confirmed = lane.stop_replied > lane.locked_at ? lane.stop_replied : lane.confirmed_at;
+    lane.open_at = confirmed > lane.locked_at ? confirmed : now;
+  }
+}
+
+/// Rule 4.3. The node looks at its dead men before each exchange.
+void Checker::watchDeadMen(TimePoint now)
+{
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    Lane& lane = lanes_[index];
+    const Duration timeout = seconds(scene_.inverters[index].command_timeout);
+    if (!lane.fed || timeout == Duration{ 0 } || now - quiet < *lane.fed + timeout)
+    {
+      continue;
+    }
+    const TimePoint since = *lane.fed + timeout;
+    lane.fed.reset();
+    if (!lane.run_sent)
+    {
+      continue;
+    }
+    const bool counts = lane.run_answered && !lane.stopping && online(index);
+    lockUp(since, lane, true);
+    if (counts)
+    {
+      lane.due = since;
+      lane.due_counts = false;
+      lane.stopping = true;
+    }
+  }
+}
+
+// --- stops ---------------------------------------------------------------------------------------------------------------
+
+void Checker::stopAsked(TimePoint now, std::optional<std::size_t> index)
+{
+  for (std::size_t one = 0; one < lanes_.size(); ++one)
+  {
+    if (index && *index != one)
+    {
+      continue;
+    }
+    Lane& lane = lanes_[one];
+    const bool counts = !lane.stopping && !lane.due;
+    if (!online(one))
+    {
+      // It is tried once at once, then it is the probe.
+      probe_allowance_ += toSeconds(scene_.longestExchange());
+    }
+    lockUp(now, lane, true);
+    lane.zero_due.reset();
+    lane.stopping = true;
+    if (counts)
+    {
+      lane.due = now;
+      lane.due_counts = true;
+    }
+  }
+}
+
+void Checker::stopConfirmed(std::size_t index, TimePoint asked_at) const
+{
+  const Lane& lane = lanes_[index];
+  const TimePoint now = now_();
+  if (runLatched(index) && !lane.permit)
+  {
+    fail(now, "a confirmed stop", nameOf(index) + " still has RUN on");
+  }
+  const Brand brand = scene_.inverters[index].brand;
+  const bool tells = brand == Brand::HITACHI || brand == Brand::TOSHIBA;
+  if (lane.stop_replied < asked_at && lane.run_read < asked_at)
+  {
+    fail(now, "a confirmed stop", nameOf(index) + " has acknowledged no stop since it was asked for");
+  }
+  if (tells && lane.confirmed_at < asked_at)
+  {
+    fail(now, "a confirmed stop", nameOf(index) + " was not asked whether RUN is off");
+  }
+}
+
+/// Rules 3.1 and 4.3: while a stop waits for its first byte, nothing else goes.
+void Checker::checkStopFirst(TimePoint now)
+{
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  std::size_t waiting = lanes_.size();
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const Lane& lane = lanes_[index];
+    waiting = lane.due && *lane.due + quiet <= now && online(index) ? index : waiting;
+  }
+  if (waiting == lanes_.size())
+  {
+    return;
+  }
+  // Several stops take turns, each once before one is repeated.
+  const bool first = facts_.inverter && lanes_[*facts_.inverter].stop_sent < *lanes_[waiting].due;
+  if (!facts_.stop || !(facts_.broadcast || first))
+  {
+    fail(now, "a stop is the next frame on the wire",
+         "a stop of " + nameOf(waiting) + " waits since " + text(toSeconds(now - *lanes_[waiting].due) * 1e3) +
+             " ms, and another frame goes");
+  }
+}
+
+/// The time of an exchange in flight, the gap, and what a broadcast takes.
+void Checker::checkOverdue(TimePoint now)
+{
+  const Duration bound = scene_.longestExchange() + 2 * scene_.gap() + seconds(QUIET_S + TURNAROUND_S) + babble(now);
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const Lane& lane = lanes_[index];
+    if (lane.due && online(index) && now - std::max(*lane.due, last_due_served_) > bound)
+    {
+      fail(now, "a stop's first byte within the exchange in flight plus the gap",
+           nameOf(index) + " waits since " + text(toSeconds(now - *lane.due)) + " s");
+    }
+    const auto zero_bound = ZERO_BOUND_EXCHANGES + 3.0 * static_cast<double>(lanes_.size());
+    if (lane.zero_due && online(index) && now - *lane.zero_due > seconds(zero_bound * toSeconds(bound)))
+    {
+      fail(now, "a command of 0 takes RUN off",
+           nameOf(index) + " has got no stop since " + text(toSeconds(now - *lane.zero_due)) + " s");
+    }
+  }
+}
+
+void Checker::noteStopFrame(TimePoint now, std::size_t index)
+{
+  Lane& lane = lanes_[index];
+  const TimePoint served_before = last_due_served_;
+  last_due_served_ = now;
+  if (lane.due)
+  {
+    const Duration latency = now - *lane.due;
+    if (lane.due_counts)
+    {
+      ++statistics_.stops;
+      // Stops that were asked for together go one after the other: the first one tells the latency.
+      statistics_.worst_stop =
+          served_before < *lane.due ? std::max(statistics_.worst_stop, latency) : statistics_.worst_stop;
+    }
+  }
+  lane.due.reset();
+  lane.zero_due.reset();
+  lane.stop_sent = now;
+  lane.stopping = true;
+  lane.run_answered = false;
+  lane.run_sent = false;
+  lane.settled = false;
+  lane.set_answered.reset();
+  lane.power_lost.reset();
+}
+
+// --- frames that move ----------------------------------------------------------------------------------------------------
+
+void Checker::checkMotion(TimePoint now)
+{
+  if (facts_.broadcast)
+  {
+    if (!scene_.one_brand || !facts_.stop)
+    {
+      fail(now, "broadcasts", "a broadcast that is no stop, or on a bus of several brands");
+    }
+    return;
+  }
+  const std::size_t index = *facts_.inverter;
+  Lane& lane = lanes_[index];
+  if (facts_.reset && runLatched(index))
+  {
+    fail(now, "reset sends nothing unless RUN is off", nameOf(index) + " is reset with RUN on");
+  }
+  if (facts_.run)
+  {
+    ++statistics_.runs;
+    checkRun(now, lane);
+  }
+  if (facts_.set_hertz)
+  {
+    checkSetPoint(now, lane);
+  }
+  if (facts_.stop)
+  {
+    noteStopFrame(now, index);
+  }
+}
+
+/// Rules 4.1 and 4.2: every RUN has a fresh, allowed command.
+void Checker::checkRun(TimePoint now, Lane& lane)
+{
+  const std::size_t index = *facts_.inverter;
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  const bool just_now = now - lane.permit_off_at <= quiet;
+  // MX2 and RX have a coil of its own for the direction: RUN says nothing of it.
+  const bool undirected = scene_.inverters[index].brand == Brand::HITACHI;
+  facts_.reverse = undirected ? lane.hertz < 0.0 : facts_.reverse;
+  if (!lane.permit && !just_now)
+  {
+    fail(now, "no RUN without a fresh, allowed command", nameOf(index));
+  }
+  const bool just_changed = now - lane.accepted_at <= quiet && facts_.reverse == (lane.hertz_before < 0.0);
+  if (lane.permit && facts_.reverse != (lane.hertz < 0.0) && !just_changed)
+  {
+    fail(now, "the newest velocity wins", nameOf(index) + " is sent the wrong direction");
+  }
+  const bool repeated = lane.run_answered && (undirected || lane.run_reverse == facts_.reverse);
+  if ((repeated || facts_.with_read) && !lane.shown)
+  {
+    fail(now, "no RUN by a refresh or a repeat",
+         nameOf(index) + ": RUN is repeated though the last exchange has not shown it in force");
+  }
+  if (!repeated && lane.permit && !just_changed && ++lane.run_copies > scene_.retries + 1)
+  {
+    fail(now, "no RUN by a retry", nameOf(index) + ": more copies of RUN than retries");
+  }
+  const bool turns = lane.run_answered && !repeated;
+  if (lane.power_lost && !turns)
+  {
+    const Stream& stream = lane.streams[lane.commander];
+    const bool silent = lane.accepted_at - *lane.power_lost >= seconds(SHORTEST_SILENCE_S - TOLERANCE_S);
+    if (stream.zeroed_at < *lane.power_lost && !silent)
+    {
+      fail(now, "no RUN by a power cycle", nameOf(index) + " had lost its RUN, and nobody has returned to neutral");
+    }
+  }
+  lane.run_sent = true;
+}
+
+/// Rule 3.5: only the newest velocity, and each one once.
+void Checker::checkSetPoint(TimePoint now, Lane& lane)
+{
+  const std::size_t index = *facts_.inverter;
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  if (!lane.permit && now - lane.permit_off_at > quiet)
+  {
+    fail(now, "a cancelled velocity is not sent", nameOf(index));
+  }
+  const double resolution = scene_.inverters[index].brand == Brand::JE ? 0.051 : 0.0051;
+  const bool newest = std::fabs(*facts_.set_hertz - std::fabs(lane.hertz)) <= resolution;
+  const bool just_changed = now - lane.accepted_at <= quiet;
+  if (lane.permit && !newest && !just_changed)
+  {
+    fail(now, "the newest velocity wins",
+         nameOf(index) + " is sent " + text(*facts_.set_hertz) + " Hz instead of " + text(std::fabs(lane.hertz)) +
+             " Hz");
+  }
+  if (facts_.run && lane.shown)
+  {
+    // Words in force, repeated with a refresh.
+    return;
+  }
+  if (lane.settled)
+  {
+    fail(now, "no velocity is queued twice", nameOf(index) + " has confirmed it already");
+  }
+  if (++lane.set_copies > scene_.retries + 1)
+  {
+    fail(now, "no velocity is queued twice", nameOf(index) + ": more copies of a set-point than retries");
+  }
+}
+
+// --- commands --------------------------------------------------------------------------------------------------------------
+
+bool Checker::isRepeat(const Lane& lane, const bus::Publisher& publisher) const
+{
+  const auto stream = lane.streams.find(publisher.name);
+  return publisher.latched && publisher.first_on_connection && stream != lane.streams.end() &&
+         stream->second.topics.count(publisher.topic) != 0;
+}
+
+void Checker::book(TimePoint now, Lane& lane, const bus::Publisher& publisher, bool zero)
+{
+  const bool known = lane.streams.count(publisher.name) != 0;
+  Stream& stream = lane.streams[publisher.name];
+  stream.spacing = known ? now - stream.last : Duration{ 0 };
+  stream.last = now;
+  stream.neutral = zero;
+  stream.zeroed_at = zero ? now : stream.zeroed_at;
+  stream.topics.insert(publisher.topic);
+}
+
+void Checker::checkResult(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result) const
+{
+  bool out_of_range = false;
+  bool all_zero = true;
+  for (const auto& target : command.targets)
+  {
+    const double most = std::fabs(60.0 / scene_.inverters[target.first].hz_per_unit);
+    const bool beyond = !std::isfinite(target.second) ||
+                        (std::fabs(target.second) > most && std::fabs(target.second) > 1000.0) ||
+                        (target.second != 0.0 && std::fabs(target.second) < 1e-6);
+    out_of_range = out_of_range || beyond;
+    all_zero = all_zero && target.second == 0.0;
+  }
+  if (out_of_range && result != bus::ERROR_OUT_OF_RANGE)
+  {
+    fail(now, "NaN, infinity and what is out of range are refused", "answer " + std::to_string(result));
+  }
+  if (all_zero && result != 0)
+  {
+    fail(now, "a command of 0 is never refused", "answer " + std::to_string(result));
+  }
+}
+
+void Checker::commanded(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result)
+{
+  ++statistics_.commands;
+  checkResult(now, command, result);
+  bool repeat = false;
+  for (const auto& target : command.targets)
+  {
+    repeat = repeat || (target.second != 0.0 && std::isfinite(target.second) &&
+                        isRepeat(lanes_[target.first], command.publisher));
+  }
+  for (const auto& target : command.targets)
+  {
+    if (target.second == 0.0)
+    {
+      takeZero(now, target.first, command.publisher);
+    }
+    else if (result == 0 && !repeat)
+    {
+      accept(now, target.first, target.second, command.publisher);
+    }
+    else if (!repeat)
+    {
+      book(now, lanes_[target.first], command.publisher, false);
+    }
+  }
+}
+
+void Checker::takeZero(TimePoint now, std::size_t index, const bus::Publisher& publisher)
+{
+  Lane& lane = lanes_[index];
+  book(now, lane, publisher, true);
+  if (lane.run_answered && !lane.stopping && online(index) && !lane.zero_due)
+  {
+    lane.zero_due = now;
+  }
+  forbid(now, lane);
+}
+
+/// Rule 4.2 from the messages alone: may this command have been accepted?
+void Checker::accept(TimePoint now, std::size_t index, double velocity, const bus::Publisher& publisher)
+{
+  ++statistics_.accepted;
+  Lane& lane = lanes_[index];
+  if (!lane.open_at || lane.needs_no_fault)
+  {
+    fail(now, "a lock is forgotten",
+         nameOf(index) + " takes a velocity " +
+             (lane.needs_status       ? "before its first status, or while offline"
+              : lane.needs_stop_reply ? "before its stop is confirmed"
+                                      : "while it is tripped"));
+  }
+  const auto found = lane.streams.find(publisher.name);
+  const bool known = found != lane.streams.end();
+  Duration needed = std::max(seconds(scene_.inverters[index].command_timeout), seconds(SHORTEST_SILENCE_S));
+  TimePoint since = *lane.open_at;
+  if (known)
+  {
+    needed = std::max(needed, std::min(2 * found->second.spacing, seconds(LONGEST_SILENCE_S)));
+    since = std::max(since, found->second.last);
+  }
+  const bool admitted = known && (found->second.neutral || found->second.admitted == lane.lock);
+  if (!admitted && now - since < needed - seconds(TOLERANCE_S))
+  {
+    fail(now, "a lock is forgotten",
+         nameOf(index) + " takes a velocity of " + publisher.name + ", who has not returned to neutral: silent for " +
+             text(toSeconds(now - since)) + " s of " + text(toSeconds(needed)) + " s");
+  }
+  if (publisher.latched && publisher.first_on_connection && publisher.before_start && !known)
+  {
+    fail(now, "a lock is forgotten", nameOf(index) + " takes a message that was latched before the start");
+  }
+  book(now, lane, publisher, false);
+  lane.streams[publisher.name].admitted = lane.lock;
+  const double hertz = velocity * scene_.inverters[index].hz_per_unit;
+  lane.settled = lane.settled && lane.permit && std::fabs(hertz - lane.hertz) < 1e-9;
+  lane.hertz_before = lane.hertz;
+  lane.hertz = hertz;
+  lane.permit = true;
+  lane.accepted_at = now;
+  lane.fed = now;
+  lane.commander = publisher.name;
+  lane.run_copies = 0;
+  lane.set_copies = 0;
+  lane.zero_due.reset();
+}
+}  // namespace fuzz
+}  // namespace inverter_bus

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_FUZZ_FRAMES_H
+#define INVERTER_BUS_FUZZ_FRAMES_H
+
+#include <optional>
+#include <vector>
+
+#include "bus_fuzz_scene.h"
+#include "inverter_bus/simulation/bytes.h"
+
+namespace inverter_bus
+{
+namespace fuzz
+{
+/// What a request of the master asks of a drive, read from its bytes and the drives' manuals alone: no profile and no line
+/// of the driver takes part.
+struct RequestFacts
+{
+  /// Index of the inverter; nothing: a broadcast, or a station that is not on the bus.
+  std::optional<std::size_t> inverter;
+  bool broadcast = false;
+  bool run = false;    ///< carries a RUN
+  bool stop = false;   ///< takes RUN off
+  bool reset = false;  ///< clears a trip
+  bool reverse = false;
+  /// Command words and a read in one frame (17H).
+  bool with_read = false;
+  bool loopback = false;
+  bool expects_reply = true;
+  std::optional<double> set_hertz;  ///< writes this frequency
+  bool reads = false;
+  bool reads_frequency = false;
+  bool reads_run = false;        ///< the RUN command as the drive holds it from the bus
+  bool reads_parameter = false;  ///< no status: settings, trip memory, parameters
+  unsigned address = 0;
+
+  /// Part of a velocity or a stop: what moves a motor or takes RUN off.
+  bool commands() const
+  {
+    return run || stop || set_hertz.has_value();
+  }
+};
+
+RequestFacts readRequest(const Scene& scene, const simulation::Bytes& frame);
+
+enum class ReplyKind
+{
+  NORMAL,
+  REFUSAL,  ///< the drive refuses the request
+  OTHER     ///< damaged, another station's, another request's
+};
+
+/// What a drive's bytes are to the request that it was sent.
+ReplyKind readReply(const Scene& scene, const simulation::Bytes& request, const simulation::Bytes& reply,
+                    unsigned& refusal);
+}  // namespace fuzz
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_FUZZ_FRAMES_H

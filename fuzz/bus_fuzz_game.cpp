@@ -1,0 +1,568 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus_fuzz_game.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inverter_bus
+{
+namespace fuzz
+{
+namespace
+{
+// A drive that was switched on is deaf for 1 s; the rest is rule 3.7 and a margin.
+constexpr double BACK_S = 5.5;
+constexpr double SETTLED_S = 12.0;
+constexpr double SLOW_REFRESH_S = 0.4;  // of one inverter at 9600 baud beside services
+constexpr double ANSWERED_S = 60.0;     // each call has its own, shorter bound, which the checker knows
+constexpr double UNLOCKED_S = 7.0;
+constexpr double RESET_S = 40.0;
+constexpr double RUN_S = 4.0;
+constexpr double STREAM_PERIOD_S = 0.1;
+constexpr double SPEED_TOLERANCE_HZ = 0.2;
+}  // namespace
+
+Game::Game(World& world, std::uint64_t seed)
+  : world_(world), dice_(seed * 2654435761U + 12345U), streams_(world.scene().inverters.size())
+{
+  pace_ = dice_.any<double>({ 0.05, 0.15, 0.3, 0.6 });
+  harm_share_ = dice_.any<double>({ 0.0, 0.05, 0.1, 0.25, 0.5 });
+}
+
+std::size_t Game::anyone()
+{
+  return dice_.below(streams_.size());
+}
+
+const std::string& Game::nameOf(std::size_t index) const
+{
+  return world_.scene().inverters[index].name;
+}
+
+double Game::anySpeed(std::size_t index)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  const double hertz = dice_.between(facts.lowest_hz, facts.highest_hz);
+  return dice_.hits(0.3) ? -hertz : hertz;
+}
+
+std::string Game::anyPublisher()
+{
+  return dice_.hits(0.75) ? "/one" : (dice_.hits(0.7) ? "/two" : "/three");
+}
+
+bool Game::allOf(const std::function<bool(std::size_t)>& condition) const
+{
+  for (std::size_t index = 0; index < streams_.size(); ++index)
+  {
+    if (!condition(index))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+// --- play --------------------------------------------------------------------------------------------------------------------
+
+void Game::play(Duration duration)
+{
+  if (dice_.hits(0.1) && world_.scene().inverters.front().brand == Brand::HITACHI)
+  {
+    // Somebody has left RUN on.
+    world_.provoke("bus foreign 01 05 00 00 FF 00");
+    world_.pass(seconds(0.3));
+  }
+  acting_ = true;
+  streaming_ = true;
+  // Sometimes a live stream waits for the node to start.
+  if (dice_.hits(0.5))
+  {
+    beginStream(anyone());
+  }
+  scheduleAct();
+  world_.run(duration);
+  acting_ = false;
+  streaming_ = false;
+}
+
+void Game::scheduleAct()
+{
+  // Times of their own, not those of exchanges: in the middle of one, mostly.
+  world_.at(seconds(-pace_ * std::log(1.0 - dice_.chance()) + 1e-6), [this] {
+    if (acting_)
+    {
+      act();
+      scheduleAct();
+    }
+  });
+}
+
+void Game::act()
+{
+  if (dice_.hits(harm_share_))
+  {
+    harm();
+  }
+  else
+  {
+    use();
+  }
+}
+
+void Game::use()
+{
+  const double dice = dice_.chance();
+  if (dice < 0.6)
+  {
+    move();
+  }
+  else if (dice < 0.75)
+  {
+    stopSomething();
+  }
+  else if (dice < 0.98)
+  {
+    callService(anyone());
+  }
+  else
+  {
+    storm();
+  }
+}
+
+void Game::move()
+{
+  const double dice = dice_.chance();
+  const std::size_t index = anyone();
+  if (dice < 0.5)
+  {
+    beginStream(index);
+  }
+  else if (dice < 0.65)
+  {
+    sendVelocity(index, anySpeed(index), anyPublisher());
+  }
+  else if (dice < 0.78)
+  {
+    sendVelocity(index, 0.0, anyPublisher());
+  }
+  else if (dice < 0.88)
+  {
+    sendGroup();
+  }
+  else if (dice < 0.94)
+  {
+    sendLatched(index);
+  }
+  else
+  {
+    sendNonsense(index);
+  }
+}
+
+void Game::beginStream(std::size_t index)
+{
+  Stream& stream = streams_[index];
+  stream.on = true;
+  stream.hertz = anySpeed(index);
+  stream.drift = dice_.hits(0.3) ? 0.05 : 0.0;
+  stream.period = dice_.any<double>({ 0.02, 0.05, 0.1, 0.1, 0.25 });
+  stream.until = world_.now() + seconds(dice_.between(0.3, 6.0));
+  stream.publisher = anyPublisher();
+  tickStream(index, ++stream.number);
+}
+
+void Game::tickStream(std::size_t index, unsigned number)
+{
+  Stream& stream = streams_[index];
+  if (!streaming_ || !stream.on || stream.number != number)
+  {
+    return;
+  }
+  if (world_.now() >= stream.until)
+  {
+    stream.on = false;
+    if (dice_.hits(0.5))
+    {
+      sendVelocity(index, 0.0, stream.publisher);
+    }
+    return;
+  }
+  stream.hertz += stream.hertz > 0.0 ? stream.drift : -stream.drift;
+  sendVelocity(index, stream.hertz, stream.publisher);
+  world_.at(seconds(stream.period), [this, index, number] { tickStream(index, number); });
+}
+
+void Game::sendVelocity(std::size_t index, double hertz, const std::string& publisher)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  bus::VelocityCommand command;
+  command.targets = { { index, hertz == 0.0 ? 0.0 : hertz / facts.hz_per_unit } };
+  command.publisher.name = publisher;
+  command.publisher.topic = facts.name + "/command";
+  world_.command(command);
+}
+
+void Game::sendLatched(std::size_t index)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  bus::VelocityCommand command;
+  command.targets = { { index, anySpeed(index) / facts.hz_per_unit } };
+  command.publisher.name = dice_.hits(0.5) ? "/latch" : "/one";
+  command.publisher.topic = facts.name + "/command";
+  command.publisher.latched = true;
+  command.publisher.first_on_connection = dice_.hits(0.7);
+  command.publisher.before_start = dice_.hits(0.3);
+  world_.command(command);
+}
+
+void Game::sendGroup()
+{
+  bus::VelocityCommand command;
+  command.publisher.name = anyPublisher();
+  command.publisher.topic = "command";
+  command.grouped = true;
+  for (std::size_t index = 0; index < streams_.size(); ++index)
+  {
+    if (dice_.hits(0.6))
+    {
+      const double hertz = dice_.hits(0.2) ? 0.0 : anySpeed(index);
+      command.targets.emplace_back(index, hertz / world_.scene().inverters[index].hz_per_unit);
+    }
+  }
+  if (!command.targets.empty())
+  {
+    world_.command(command);
+  }
+}
+
+void Game::sendNonsense(std::size_t index)
+{
+  bus::VelocityCommand command;
+  const std::vector<double> values{ std::numeric_limits<double>::quiet_NaN(),
+                                    std::numeric_limits<double>::infinity(),
+                                    -std::numeric_limits<double>::infinity(),
+                                    1e6,
+                                    -1e6,
+                                    1e-9 };
+  command.targets = { { index, dice_.any(values) } };
+  command.publisher.name = anyPublisher();
+  command.publisher.topic = nameOf(index) + "/command";
+  world_.command(command);
+}
+
+/// Many commands and calls within a moment.
+void Game::storm()
+{
+  const std::size_t count = 10 + dice_.below(30);
+  const bool calls = dice_.hits(0.5);
+  for (std::size_t number = 0; number < count; ++number)
+  {
+    world_.at(seconds(dice_.between(0.0, 0.3)), [this, calls] {
+      const std::size_t index = anyone();
+      if (!acting_)
+      {
+        return;
+      }
+      if (calls)
+      {
+        callService(index);
+      }
+      else
+      {
+        sendVelocity(index, anySpeed(index), anyPublisher());
+      }
+    });
+  }
+}
+
+void Game::stopSomething()
+{
+  const std::size_t index = anyone();
+  const bool all = dice_.hits(0.25);
+  const auto mode = static_cast<std::uint8_t>(dice_.hits(0.7) ? 0 : dice_.below(5));
+  world_.at(seconds(dice_.between(0.0, 0.05)), [this, index, all, mode] {
+    world_.stop(all ? std::optional<std::size_t>() : std::optional<std::size_t>(index), mode, nullptr);
+  });
+}
+
+void Game::callService(std::size_t index)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  const double dice = dice_.chance();
+  if (dice < 0.3)
+  {
+    world_.reset(index, nullptr);
+  }
+  else if (dice < 0.4)
+  {
+    world_.readFaults(index);
+  }
+  else if (dice < 0.75 && !facts.fixed_parameter.empty())
+  {
+    world_.readFixedParameter(index);
+  }
+  else if (dice < 0.8)
+  {
+    world_.readUnknownParameter(index);
+  }
+  else if (!facts.free_parameter.empty())
+  {
+    world_.writeFreeParameter(index, 1.0 + static_cast<double>(dice_.below(3)), dice_.hits(0.5));
+  }
+}
+
+// --- harm --------------------------------------------------------------------------------------------------------------------
+
+void Game::harm()
+{
+  const double dice = dice_.chance();
+  if (dice < 0.55)
+  {
+    harmReplies(anyone());
+  }
+  else if (dice < 0.85)
+  {
+    harmDrive(anyone());
+  }
+  else if (dice < 0.95)
+  {
+    harmLine();
+  }
+  else
+  {
+    killSeveral();
+  }
+}
+
+void Game::harmReplies(std::size_t index)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  const std::string late = "late " + std::to_string(facts.response_timeout * dice_.between(0.5, 3.0));
+  const std::string refusal = facts.brand == Brand::HITACHI ? "exception 34"
+                              : facts.brand == Brand::JE    ? "exception 8707"
+                                                            : "exception 4";
+  const std::vector<std::string> faults{
+    "damaged",      "truncated",       "truncated 1",   late,    late,
+    "noise 4",      "foreign station", "foreign shape", refusal, dice_.hits(0.2) ? "exception 2" : refusal,
+    "lost_request", "lost_reply",      "lost_reply"
+  };
+  world_.provoke(facts.name + " " + dice_.any(faults) + " count " +
+                 std::to_string(1 + dice_.below(dice_.hits(0.8) ? 1 : 6)));
+}
+
+void Game::harmDrive(std::size_t index)
+{
+  const std::string& name = nameOf(index);
+  const double dice = dice_.chance();
+  if (dice < 0.3)
+  {
+    world_.cutPower(index, dice_.any<double>({ 0.02, 0.02, 0.3, 1.2, 3.0 }));
+  }
+  else if (dice < 0.5)
+  {
+    world_.provoke(name + " offline " + std::to_string(dice_.any<double>({ 0.1, 0.4, 2.0, 6.0 })));
+  }
+  else if (dice < 0.65)
+  {
+    world_.provoke(name + " trip " + std::to_string(1 + dice_.below(7)));
+  }
+  else if (dice < 0.75)
+  {
+    world_.provoke(name + " panel_stop");
+  }
+  else if (dice < 0.83)
+  {
+    world_.provoke(name + " panel " + std::to_string(dice_.hits(0.5) ? 0.0 : dice_.between(5.0, 40.0)));
+    world_.at(seconds(dice_.between(0.2, 3.0)), [this, name] { world_.provoke(name + " panel_release"); });
+  }
+  else if (dice < 0.93)
+  {
+    world_.provoke(name + " sto on");
+    world_.at(seconds(dice_.between(0.1, 2.0)), [this, name] { world_.provoke(name + " sto off"); });
+  }
+  else
+  {
+    world_.provoke(name + " busy " + std::to_string(dice_.between(0.1, 1.5)));
+  }
+}
+
+void Game::harmLine()
+{
+  const double dice = dice_.chance();
+  if (dice < 0.35)
+  {
+    world_.provoke("bus unplug " + std::to_string(dice_.between(0.05, 1.5)));
+  }
+  else if (dice < 0.5)
+  {
+    world_.provoke("bus silent " + std::to_string(dice_.between(0.05, 1.0)));
+    world_.checker().disturbed(world_.now());
+  }
+  else if (dice < 0.75 && !world_.scene().compoway)
+  {
+    // A block check character of CompoWay/F is a XOR: two bytes damaged alike get through.
+    world_.checker().disturbed(world_.now());
+    world_.provoke("bus noise " + std::to_string(1 + dice_.below(8)));
+  }
+  else
+  {
+    // A second master that speaks to a station that is not on this bus.
+    world_.checker().disturbed(world_.now());
+    world_.provoke(world_.scene().compoway ? "bus foreign 770000601" : "bus foreign 4D 03 10 00 00 02");
+  }
+}
+
+void Game::killSeveral()
+{
+  const double duration = dice_.between(1.0, 8.0);
+  for (std::size_t index = 0; index < streams_.size(); ++index)
+  {
+    if (dice_.hits(0.6))
+    {
+      world_.provoke(nameOf(index) + " offline " + std::to_string(duration * dice_.between(0.5, 1.0)));
+    }
+  }
+}
+
+// --- calm --------------------------------------------------------------------------------------------------------------------
+
+void Game::require(Duration limit, const std::string& rule, const std::function<bool()>& condition)
+{
+  if (!world_.runUntil(limit, condition))
+  {
+    throw Violation(world_.now(), "liveness",
+                    rule + " within " + std::to_string(toSeconds(limit)) + " s\n" + world_.state());
+  }
+}
+
+void Game::mendEverything()
+{
+  world_.provoke("bus plug");
+  world_.provoke("bus silent off");
+  world_.checker().disturbed(world_.now());
+  for (std::size_t index = 0; index < streams_.size(); ++index)
+  {
+    const std::string& name = nameOf(index);
+    for (const char* mend : { "clear", "online", "power on", "panel_release", "sto off" })
+    {
+      world_.provoke(name + " " + mend);
+    }
+  }
+}
+
+void Game::calmDown()
+{
+  const double cycle = world_.scene().interval;
+  mendEverything();
+  const TimePoint mended_at = world_.now();
+  const auto heardSince = [this](TimePoint time) {
+    return allOf([this, time](std::size_t index) {
+      return world_.checker().online(index) && world_.checker().status(index).stamp > time;
+    });
+  };
+  const double share = SLOW_REFRESH_S * static_cast<double>(streams_.size());
+  require(seconds(BACK_S + share + 2.0 * cycle), "every drive is back",
+          [&heardSince, mended_at] { return heardSince(mended_at); });
+  world_.stop(std::nullopt, 0, nullptr);
+  const TimePoint stopped_at = world_.now();
+  require(seconds(SETTLED_S + 2.0 * cycle), "every stop is confirmed", [this, stopped_at] {
+    return allOf([this, stopped_at](std::size_t index) {
+      const bus::InverterStatus& status = world_.checker().status(index);
+      return !status.stop_active && status.stamp > stopped_at;
+    });
+  });
+  require(seconds(ANSWERED_S), "every call is answered", [this] { return world_.checker().openCalls() == 0; });
+  resetAll();
+  require(seconds(UNLOCKED_S + 2.0 * cycle), "every lock opens, every status is fresh", [this, cycle] {
+    return allOf([this, cycle](std::size_t index) {
+      const bus::InverterStatus& status = world_.checker().status(index);
+      return world_.checker().online(index) && !status.locked && !status.stop_active &&
+             world_.now() - status.stamp <
+                 seconds(1.0 + SLOW_REFRESH_S * static_cast<double>(streams_.size()) + 5.0 * cycle);
+    });
+  });
+  runAll();
+  stopAll();
+}
+
+void Game::resetAll()
+{
+  for (std::size_t index = 0; index < streams_.size(); ++index)
+  {
+    std::string failure = "no answer";
+    bool asked = false;
+    // Its identity may not have been read yet.
+    require(seconds(RESET_S), "reset of " + nameOf(index), [&] {
+      if (!asked && !failure.empty())
+      {
+        asked = true;
+        world_.reset(index, [&](const bus::Answer& answer) {
+          asked = false;
+          failure = answer.success ? "" : answer.message;
+        });
+      }
+      return failure.empty();
+    });
+  }
+}
+
+void Game::runAll()
+{
+  const TimePoint until = world_.now() + seconds(RUN_S + 2.0 * world_.scene().interval);
+  streaming_ = true;
+  for (std::size_t index = 0; index < streams_.size(); ++index)
+  {
+    const double hertz = anySpeed(index);
+    Stream& stream = streams_[index];
+    stream.on = true;
+    stream.hertz = hertz;
+    stream.drift = 0.0;
+    stream.period = STREAM_PERIOD_S;
+    stream.until = until + seconds(1.0);
+    stream.publisher = "/calm";
+    const InverterFacts& facts = world_.scene().inverters[index];
+    bus::VelocityCommand command;
+    command.targets = { { index, hertz / facts.hz_per_unit } };
+    command.publisher.name = stream.publisher;
+    command.publisher.topic = facts.name + "/command";
+    const std::uint16_t result = world_.command(command);
+    if (result != 0)
+    {
+      throw Violation(world_.now(), "liveness",
+                      nameOf(index) + " refuses a command with " + std::to_string(result) +
+                          " after everything has come back\n" + world_.state());
+    }
+    tickStream(index, ++stream.number);
+  }
+  require(until - world_.now(), "every motor runs", [this] {
+    return allOf([this](std::size_t index) {
+      const Truth truth = world_.checker().truth(index);
+      const double wanted = streams_[index].hertz;
+      return std::fabs(truth.hertz - std::fabs(wanted)) < SPEED_TOLERANCE_HZ &&
+             truth.direction == (wanted < 0.0 ? -1 : 1);
+    });
+  });
+  world_.run(seconds(0.3));
+  streaming_ = false;
+}
+
+void Game::stopAll()
+{
+  bool done = false;
+  std::string failure;
+  world_.stop(std::nullopt, 0, [&](const bus::Answer& answer) {
+    done = true;
+    failure = answer.success ? "" : answer.message;
+  });
+  require(seconds(60.0), "the stop is answered", [&] { return done; });
+  if (!failure.empty())
+  {
+    throw Violation(world_.now(), "liveness", "stop: " + failure + "\n" + world_.state());
+  }
+}
+}  // namespace fuzz
+}  // namespace inverter_bus

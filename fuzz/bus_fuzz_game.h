@@ -64,6 +64,7 @@ private:
   void mendEverything();
   void resetAll();
   void runAll();
+  bool runOne(std::size_t index);
   void stopAll();
 
   World& world_;
@@ -71,6 +72,7 @@ private:
   std::vector<Stream> streams_;
   bool acting_ = false;      ///< chance goes on
   bool streaming_ = false;   ///< streams go on
+  bool refuses_ = false;     ///< drives refuse requests; otherwise replies of another kind come
   double pace_ = 0.1;        ///< [s] between two acts, on average
   double harm_share_ = 0.3;  ///< of the acts
 };

@@ -70,6 +70,7 @@ World::World(const Scene& scene, const bus::Configuration& configuration, std::u
   , loop_(coordinator_, line_, clock_, mutex_)
   , bounds_(coordinator_.bounds())
   , writes_(scene.inverters.size())
+  , cuts_(scene.inverters.size())
 {
   simulated_.setObserver([this](const simulation::FrameRecord& frame) {
     frames_.push_back(frame);
@@ -278,7 +279,8 @@ void World::writeFreeParameter(std::size_t index, double value, bool persist)
     const bool asked = std::any_of(writes_[index].begin(), writes_[index].end(), [&](const auto& write) {
       return asked_at - write.first < seconds(bounds_.write_parameter) && std::fabs(held - write.second) < 0.051;
     });
-    if (powered && !asked)
+    // What is in the RAM gets lost with the supply.
+    if (powered && !asked && cuts_[index] < asked_at)
     {
       throw Violation(
           clock_.now(), "a service succeeds when the drive has confirmed",
@@ -317,6 +319,7 @@ bool World::provoke(const std::string& command)
 void World::cutPower(std::size_t index, double duration)
 {
   const InverterFacts& facts = scene_.inverters[index];
+  cuts_[index] = clock_.now();
   checker_.lostPower(clock_.now(), index);
   if (facts.brand == Brand::TOSHIBA)
   {

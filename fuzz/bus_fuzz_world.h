@@ -97,6 +97,7 @@ private:
   std::deque<std::pair<TimePoint, std::string>> events_;
   /// Values that each free parameter was to be set to, and when.
   std::vector<std::vector<std::pair<TimePoint, double>>> writes_;
+  std::vector<TimePoint> cuts_;  ///< of each drive's supply, the last one
 };
 }  // namespace fuzz
 }  // namespace inverter_bus

@@ -414,12 +414,17 @@ Duration Coordinator::probeTimeout(const Inverter& inverter) const
 }
 
 /// Rule 3.9: after a time-out nothing of the same shape is asked of this station before its late reply, or a loop-back
-/// with a fresh number, has come. A stop's write is exempt: its read-back decides.
+/// with a fresh number, has come. A stop's write is exempt: its read-back decides, or a second write after a loop-back.
 bool Coordinator::makeSafe(TimePoint now, Current& current)
 {
   Inverter& inverter = *inverters_[current.inverter];
+  if (current.request.broadcast || line_.mayAsk(current.request))
+  {
+    return true;
+  }
   const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
-  if (current.request.broadcast || stop_write || line_.mayAsk(current.request))
+  current.may_be_late = stop_write;
+  if (stop_write && !inverter.stop.wantsClearLine())
   {
     return true;
   }

@@ -147,7 +147,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     inverter.movement.forgetWords();
     return;
   }
-  const StopJob::Progress progress = inverter.stop.done(reply);
+  const StopJob::Progress progress = inverter.stop.done(reply, current.may_be_late);
   if (progress == StopJob::Progress::Confirmed)
   {
     stopConfirmed(reply.finished_at, inverter);

@@ -38,6 +38,8 @@ void StopJob::request(TimePoint now, StopMode mode)
   pending_ = sequenceFor(mode) != "stop" || drive_.sequence("stop") != nullptr;
   mode_ = mode;
   step_ = 0;
+  acknowledged_in_doubt_ = false;
+  wants_clear_line_ = false;
   ++version_;
   requested_at_ = now;
   first_frame_left_ = false;
@@ -79,7 +81,7 @@ std::optional<Duration> StopJob::sent(TimePoint now)
   return now - requested_at_;
 }
 
-StopJob::Progress StopJob::done(const wire::Reply& reply)
+StopJob::Progress StopJob::done(const wire::Reply& reply, bool may_be_late)
 {
   if (version_on_wire_ != version_)
   {
@@ -89,26 +91,18 @@ StopJob::Progress StopJob::done(const wire::Reply& reply)
   if (written() && isLastingRefusal(reply) && !has_told_)
   {
     // This drive has never had such a read: it can't tell, so that the acknowledged write has to do.
-    confirm();
-    return Progress::Confirmed;
+    return confirmByAcknowledgement();
   }
   if (reply.outcome != wire::Outcome::Ok)
   {
-    last_error_ = reply.error_id;
     // A read-back that got lost says nothing: RUN may be on or off, so the whole attempt starts again.
-    step_ = 0;
-    ++attempts_;
-    return Progress::Failed;
+    return fail(reply.error_id);
   }
   if (!written())
   {
     ++step_;
-    if (!written() || drive_.runBlock())
-    {
-      return Progress::GoesOn;
-    }
-    confirm();
-    return Progress::Confirmed;
+    acknowledged_in_doubt_ = acknowledged_in_doubt_ || may_be_late;
+    return written() && !drive_.runBlock() ? confirmByAcknowledgement() : Progress::GoesOn;
   }
   drive::Monitor monitor;
   drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
@@ -117,13 +111,37 @@ StopJob::Progress StopJob::done(const wire::Reply& reply)
   const bool still_on = monitor.run_seen.value_or(true);
   if (still_on)
   {
-    last_error_ = 0;
-    step_ = 0;
-    ++attempts_;
-    return Progress::Failed;
+    return fail(0);
   }
   confirm();
   return Progress::Confirmed;
+}
+
+/// The drive can't tell whether RUN is off: its acknowledgement counts, if it can be no other request's.
+StopJob::Progress StopJob::confirmByAcknowledgement()
+{
+  if (acknowledged_in_doubt_)
+  {
+    const Progress progress = fail(wire::ERROR_TIMEOUT);
+    wants_clear_line_ = true;
+    return progress;
+  }
+  confirm();
+  return Progress::Confirmed;
+}
+
+StopJob::Progress StopJob::fail(std::uint16_t error_id)
+{
+  last_error_ = error_id;
+  step_ = 0;
+  acknowledged_in_doubt_ = false;
+  ++attempts_;
+  return Progress::Failed;
+}
+
+bool StopJob::wantsClearLine() const
+{
+  return wants_clear_line_;
 }
 
 void StopJob::confirm()
@@ -131,6 +149,8 @@ void StopJob::confirm()
   pending_ = false;
   step_ = 0;
   attempts_ = 0;
+  acknowledged_in_doubt_ = false;
+  wants_clear_line_ = false;
 }
 
 void StopJob::cancel()

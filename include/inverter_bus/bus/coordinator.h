@@ -116,6 +116,8 @@ private:
     bool resync = false;
     /// The request is a loop-back, as a probe or for resync.
     bool loopback = false;
+    /// A stop's write that a late reply to an earlier request could answer.
+    bool may_be_late = false;
     Write write;
     CommandId job = 0;
   };

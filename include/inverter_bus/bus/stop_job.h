@@ -43,7 +43,11 @@ public:
     Failed,
     Confirmed
   };
-  Progress done(const wire::Reply& reply);
+  /// \p may_be_late: the answer could as well be the late one to an earlier request of the same shape (rule 3.9), from
+  /// which a stop's writes are exempt. Then only a read-back of RUN confirms, or a write that no late reply can answer.
+  Progress done(const wire::Reply& reply, bool may_be_late = false);
+  /// The next write shall go only when no late reply of its shape can come any more; a loop-back sees to that.
+  bool wantsClearLine() const;
   /// RUN was seen off by a status read that was sent after the write.
   void confirm();
   /// A newer command of the same user takes its place (a command of 0 that was superseded).
@@ -53,6 +57,8 @@ public:
 
 private:
   const drive::Sequence* sequence() const;
+  Progress confirmByAcknowledgement();
+  Progress fail(std::uint16_t error_id);
 
   const drive::Drive& drive_;
   std::uint8_t station_;
@@ -63,6 +69,9 @@ private:
   std::uint16_t last_error_ = 0;
   TimePoint requested_at_;
   bool first_frame_left_ = false;
+  /// A write of this attempt may have been answered by a late reply to an earlier request.
+  bool acknowledged_in_doubt_ = false;
+  bool wants_clear_line_ = false;
   /// The read-back has worked before.
   bool has_told_ = false;
   /// Counts changes of what is to be done, and which one the frame on the wire belongs to.

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "inverter_bus/simulation/hitachi_drive.h"
-#include "inverter_bus/simulation/toshiba_vfs15.h"
+#include "inverter_bus/simulation/motor.h"
 
 // The line and what is published. What may move stands in bus_fuzz_checker_motion.cpp.
 
@@ -117,34 +116,19 @@ bool Checker::flag(std::size_t index, const std::string& key) const
 
 bool Checker::runLatched(std::size_t index) const
 {
-  return flag(index, scene_.inverters[index].brand == Brand::HITACHI ? "run_coil" : "run_command");
+  return world_.drives()[index]->runCommand();
 }
 
 Truth Checker::truth(std::size_t index) const
 {
-  const simulation::SimulatedDrive& drive = *world_.drives()[index];
-  const auto* hitachi = dynamic_cast<const simulation::HitachiDrive*>(&drive);
-  const auto* toshiba = dynamic_cast<const simulation::ToshibaVfs15*>(&drive);
+  const simulation::Motor& motor = world_.drives()[index]->motor();
+  const Brand brand = scene_.inverters[index].brand;
   Truth truth;
-  if (hitachi != nullptr || toshiba != nullptr)
+  truth.hertz = std::fabs(motor.frequency());
+  truth.direction = motor.frequency() == 0.0 ? 0 : (motor.frequency() > 0.0 ? 1 : -1);
+  if (brand == Brand::HITACHI || brand == Brand::TOSHIBA)
   {
-    const simulation::Motor& motor = hitachi != nullptr ? hitachi->motor() : toshiba->motor();
-    truth.hertz = std::fabs(motor.frequency());
-    truth.direction = motor.frequency() == 0.0 ? 0 : (motor.frequency() > 0.0 ? 1 : -1);
     truth.torque = std::fabs(motor.torque());
-    return truth;
-  }
-  for (const auto& value : drive.describe())
-  {
-    if (value.first == "frequency")
-    {
-      truth.hertz = std::stod(value.second);
-    }
-    if (value.first == "direction")
-    {
-      truth.direction = std::stoi(value.second);
-      break;
-    }
   }
   return truth;
 }
@@ -191,6 +175,7 @@ void Checker::lost(TimePoint now)
     lane.zero_due.reset();
     lane.shown = false;
     lane.last_heard.reset();
+    lane.silences = scene_.offline_after;
   }
   disturbed_at_ = now;
 }
@@ -298,7 +283,9 @@ void Checker::endExchange(TimePoint now)
     {
       lane.settled = false;
     }
-    if (was_probe_)
+    lane.silences += facts_.expects_reply ? 1 : 0;
+    // One that has answered since, however late, is back.
+    if (was_probe_ && lane.silences > scene_.offline_after)
     {
       payProbe(now, now - sent_at_);
     }
@@ -389,6 +376,7 @@ void Checker::noteHeard(TimePoint end, std::size_t index)
 void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std::size_t index)
 {
   Lane& lane = lanes_[index];
+  lane.silences = 0;
   unsigned refusal = 0;
   // Whether it was damaged, its check sum tells: what collided may be the noise before it.
   const bool prompt = in_flight_ && lane.served == exchange_ && facts_.inverter == index;

@@ -102,7 +102,8 @@ private:
     scene_.interval = dice_.hits(0.25) ? dice_.any<double>({ 0.05, 0.3, 1.4 }) : 0.0;
     head_ << "interval: " << scene_.interval << "\n";
     head_ << "idle_divisor: " << (dice_.hits(0.25) ? 2 + dice_.below(4) : 1) << "\n";
-    head_ << "offline_after: " << (dice_.hits(0.7) ? 3 : 1 + dice_.below(8)) << "\n";
+    scene_.offline_after = static_cast<unsigned>(dice_.hits(0.7) ? 3 : 1 + dice_.below(8));
+    head_ << "offline_after: " << scene_.offline_after << "\n";
     response_timeout_ = scene_.compoway ? 0.25 : dice_.any<double>({ 0.05, 0.1, 0.1, 0.2 });
     head_ << "response_timeout: " << response_timeout_ << "\n";
   }

@@ -55,6 +55,7 @@ struct Scene
   bool one_brand = true;  ///< every inverter has the same profile
   double interval = 0.0;  ///< [s]
   int retries = 1;
+  unsigned offline_after = 3;
   std::vector<InverterFacts> inverters;
 
   /// The longest exchange that this bus can make, from its figures alone.

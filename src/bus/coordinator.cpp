@@ -98,7 +98,8 @@ void Coordinator::publishSlowly(TimePoint now)
 {
   for (const auto& inverter : inverters_)
   {
-    if (inverter->offline() && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
+    const bool away = inverter->offline() || inverter->unreadSinceReturn();
+    if (away && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
     {
       publish(now, *inverter);
     }
@@ -307,8 +308,32 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     variant = inverter.drive.variantOf(*variant);
     current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
   }
+  const auto serve_by = inverter.serveBy(budget_.deadline_margin);
+  if (!resync && !line_.mayAsk(current.request) && serve_by && *serve_by <= now)
+  {
+    const auto spare = keepAlive(inverter);
+    current.purpose = spare ? Purpose::KeepAlive : current.purpose;
+    current.request = spare.value_or(current.request);
+  }
   current.request = inverter.prepared(current.request);
   return current;
+}
+
+/// A read that no late reply can answer; nothing: this drive has none.
+std::optional<wire::Request> Coordinator::keepAlive(const Inverter& inverter) const
+{
+  for (std::optional<drive::ReadBlock> read : inverter.reads())
+  {
+    for (; read; read = inverter.drive.variantOf(*read))
+    {
+      const wire::Request request = inverter.drive.read(inverter.config.node, *read);
+      if (line_.mayAsk(request))
+      {
+        return request;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 /// All command words in one frame where the drive can; a word at a time where such a frame could give back a RUN that the
@@ -450,7 +475,9 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   }
   else
   {
-    inverter.refresh_not_before = allowed;
+    const auto serve_by = keepAlive(inverter) ? inverter.serveBy(budget_.deadline_margin) : std::nullopt;
+    inverter.refresh_not_before =
+        serve_by ? std::min(allowed, std::max(*serve_by, now + std::chrono::milliseconds(1))) : allowed;
   }
   return false;
 }

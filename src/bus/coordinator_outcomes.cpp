@@ -67,6 +67,10 @@ void Coordinator::done(const wire::Reply& reply)
   {
     inverter.loopback.note(reply.outcome);
   }
+  else if (!current.loopback && alive(reply))
+  {
+    inverter.loopback.otherAnswered();
+  }
   if (current.resync && alive(reply))
   {
     // The line is in step again: the real request keeps its turn.
@@ -86,6 +90,13 @@ void Coordinator::done(const wire::Reply& reply)
       break;
     case Purpose::Refresh:
       doneRefresh(current, reply);
+      break;
+    case Purpose::KeepAlive:
+      finishExchange(current, reply, true);
+      if (!alive(reply))
+      {
+        noteLost(reply.finished_at, inverter, reply.error_id);
+      }
       break;
     case Purpose::Setting:
       doneSetting(current, reply);

@@ -474,7 +474,7 @@ void Coordinator::startJob(TimePoint now, std::size_t index, std::unique_ptr<Job
   running.job = std::move(job);
   running.inverter = index;
   running.expires = now + seconds(bound);
-  running.callback = std::move(callback);
+  running.callbacks.push_back(std::move(callback));
   jobs_.emplace(id, std::move(running));
   queueJob(id, now);
 }
@@ -502,7 +502,10 @@ void Coordinator::endJob(CommandId id, const Answer& result)
   {
     inverters_[found->second.inverter]->reset_active = false;
   }
-  answer(found->second.callback, result);
+  for (const AnswerCallback& callback : found->second.callbacks)
+  {
+    answer(callback, result);
+  }
   jobs_.erase(found);
 }
 
@@ -526,6 +529,20 @@ void Coordinator::failJobs(std::size_t index, std::uint16_t error_id, const std:
   }
 }
 
+/// A second reset behind the first would reset a motor that was started between the two.
+bool Coordinator::joinReset(std::size_t index, const AnswerCallback& callback)
+{
+  const auto under_way = std::find_if(jobs_.begin(), jobs_.end(), [index](const auto& entry) {
+    return entry.second.inverter == index && entry.second.job->kind() == CommandKind::Reset;
+  });
+  if (under_way == jobs_.end())
+  {
+    return false;
+  }
+  under_way->second.callbacks.push_back(callback);
+  return true;
+}
+
 void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callback)
 {
   Inverter& inverter = *inverters_[index];
@@ -544,7 +561,7 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
         "a reset needs a confirmed stop before it, and a stop is not armed: " + inverter.drive.armingAdvice("stop"));
     return;
   }
-  if (refuseJob(index, callback))
+  if (refuseJob(index, callback) || joinReset(index, callback))
   {
     return;
   }

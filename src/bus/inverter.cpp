@@ -147,6 +147,11 @@ bool Inverter::known() const
   return known_;
 }
 
+bool Inverter::unreadSinceReturn() const
+{
+  return !offline_ && !known_ && returns_ > 0;
+}
+
 void Inverter::expectSilence(TimePoint until)
 {
   silence_until_ = until;
@@ -548,8 +553,8 @@ InverterStatus Inverter::status(TimePoint now) const
   status.model = settings.model();
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
-  status.communication_error = offline_;
-  if (!offline_)
+  status.communication_error = offline_ || unreadSinceReturn();
+  if (!status.communication_error)
   {
     status.monitor = refresh.monitor(now);
   }
@@ -734,14 +739,28 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_written = stop.pending() && stop.written();
   view.refresh_not_before = refresh_not_before;
   view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now;
-  const auto timeout = settings.driveTimeout();
-  if (timeout && ever_answered_)
-  {
-    const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
-    // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
-    view.serve_by = last_reply_ + std::max(latest, *timeout / 2);
-  }
+  view.serve_by = serveBy(deadline_margin);
   return view;
+}
+
+std::optional<TimePoint> Inverter::serveBy(Duration deadline_margin) const
+{
+  const auto timeout = settings.driveTimeout();
+  if (!timeout || !ever_answered_)
+  {
+    return std::nullopt;
+  }
+  const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
+  // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
+  return last_reply_ + std::max(latest, *timeout / 2);
+}
+
+std::vector<drive::ReadBlock> Inverter::reads() const
+{
+  std::vector<drive::ReadBlock> reads = refresh.fastBlocks();
+  const std::vector<drive::ReadBlock> slow = refresh.slowBlocks();
+  reads.insert(reads.end(), slow.begin(), slow.end());
+  return reads;
 }
 }  // namespace bus
 }  // namespace inverter_bus

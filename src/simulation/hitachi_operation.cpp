@@ -112,13 +112,18 @@ Refusal HitachiDrive::parameter(const std::string& code, KeyValues& values) cons
   return showAtPanel(memory_, model_.name, code, values);
 }
 
+bool HitachiDrive::runCommand() const
+{
+  return coils_[0x0001];
+}
+
 void HitachiDrive::describeMotor(KeyValues& values) const
 {
   const auto add = [&values](const char* key, const std::string& value) { values.emplace_back(key, value); };
   const auto flag = [&add](const char* key, bool value) { add(key, value ? "1" : "0"); };
   add("model", model_.name);
   appendMotor(motor_, values);
-  flag("run_coil", coils_[0x0001]);
+  flag("run_coil", runCommand());
   flag("direction_coil", coils_[0x0002]);
   flag("run_effective", runCommanded() && !tripped_);
   add("reference", twoDecimals(reference_ / 100.0));

@@ -292,13 +292,23 @@ Refusal JeDrive::parameter(const std::string& code, KeyValues& values) const
   return showAtPanel(memory_, MODEL, code, values);
 }
 
+const Motor& JeDrive::motor() const
+{
+  return motor_;
+}
+
+bool JeDrive::runCommand() const
+{
+  return run_ != Run::OFF;
+}
+
 void JeDrive::describeMotor(KeyValues& values) const
 {
   const auto add = [&values](const char* key, const std::string& value) { values.emplace_back(key, value); };
   const auto flag = [&add](const char* key, bool value) { add(key, value ? "1" : "0"); };
   add("model", MODEL);
   appendMotor(motor_, values);
-  flag("run_command", run_ != Run::OFF);
+  flag("run_command", runCommand());
   flag("run_effective", busRuns() && !tripped_);
   add("reference", twoDecimals(panelValue(memory_, code_.reference)));
   flag("tripped", tripped_);

@@ -411,6 +411,16 @@ Refusal TecoDrive::parameter(const std::string& code, KeyValues& values) const
   return showAtPanel(memory_, MODEL, code, values);
 }
 
+const Motor& TecoDrive::motor() const
+{
+  return motor_;
+}
+
+bool TecoDrive::runCommand() const
+{
+  return runBit(command_);
+}
+
 void TecoDrive::describeMotor(KeyValues& values) const
 {
   const auto add = [&values](const char* key, const std::string& value) { values.emplace_back(key, value); };
@@ -418,7 +428,7 @@ void TecoDrive::describeMotor(KeyValues& values) const
   add("model", MODEL);
   appendMotor(motor_, values);
   add("command", std::to_string(command_));
-  flag("run_command", runBit(command_));
+  flag("run_command", runCommand());
   flag("run_effective", busRuns() && !tripped_);
   add("reference", twoDecimals(reference_ / 100.0));
   flag("tripped", tripped_);

@@ -165,6 +165,11 @@ Refusal ToshibaVfs15::parameter(const std::string& code, KeyValues& values) cons
   return std::nullopt;
 }
 
+bool ToshibaVfs15::runCommand() const
+{
+  return (ram_.at(FA00) & 0x0400U) != 0;
+}
+
 void ToshibaVfs15::describeMotor(KeyValues& values) const
 {
   const auto add = [&values](const char* key, const std::string& value) { values.emplace_back(key, value); };
@@ -177,7 +182,7 @@ void ToshibaVfs15::describeMotor(KeyValues& values) const
   flag("running", motor_.turning());
   add("ramp", motor_.accelerating() ? "accelerating" : (motor_.decelerating() ? "decelerating" : "none"));
   add("command", hexadecimal(ram_.at(FA00)));
-  flag("run_command", (ram_.at(FA00) & 0x0400U) != 0);
+  flag("run_command", runCommand());
   flag("run_effective", runs());
   add("reference", number(busFrequency()));
   flag("tripped", tripped_);

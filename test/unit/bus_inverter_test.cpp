@@ -121,6 +121,44 @@ TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
   }
   EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
 }
+TEST(Loopback, ADriveThatAnswersNothingAtAllIsNotTakenForOneWithoutIt)
+{
+  LoopbackKnowledge loopback;
+  for (int tries = 0; tries < 10; ++tries)
+  {
+    loopback.note(wire::Outcome::Timeout);
+  }
+  EXPECT_TRUE(loopback.usable());
+}
+
+TEST(Loopback, ADriveThatIsSilentOnItAloneIsNotAskedAgainAndAgain)
+{
+  LoopbackKnowledge loopback;
+  for (int tries = 0; tries < 3; ++tries)
+  {
+    EXPECT_TRUE(loopback.usable());
+    loopback.note(wire::Outcome::Timeout);
+    loopback.otherAnswered();
+  }
+  EXPECT_FALSE(loopback.usable());
+  loopback.tryAgain();
+  EXPECT_TRUE(loopback.usable()) << "another drive may stand there after a return";
+}
+
+TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
+{
+  LoopbackKnowledge worked;
+  worked.note(wire::Outcome::Ok);
+  for (int tries = 0; tries < 10; ++tries)
+  {
+    worked.note(wire::Outcome::Timeout);
+    worked.otherAnswered();
+  }
+  EXPECT_TRUE(worked.usable());
+  LoopbackKnowledge refused;
+  refused.note(wire::Outcome::Exception);
+  EXPECT_FALSE(refused.usable());
+}
 }  // namespace
 }  // namespace bus
 }  // namespace inverter_bus

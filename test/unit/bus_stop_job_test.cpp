@@ -224,6 +224,50 @@ TEST(StopJob, acknowledgementConfirmsWhereTheDriveCannotTellRun)
   EXPECT_EQ(exchange(stop, ACKNOWLEDGED), Progress::Confirmed);
 }
 
+TEST(StopJob, acknowledgementThatMayBeAnotherRequestsConfirmsNothingWhereTheDriveCannotTellRun)
+{
+  drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());
+  profile.status.erase("run_seen");
+  profile.status.erase("running");
+  const drive::Drive drive(profile);
+  StopJob stop(drive, 1);
+  stop.request(at(0), StopMode::Decelerate);
+  EXPECT_FALSE(stop.wantsClearLine()) << "the first frame of a stop waits for nothing";
+  stop.sent(at(1));
+  EXPECT_EQ(stop.done(ACKNOWLEDGED, true), Progress::Failed);
+  EXPECT_TRUE(stop.wantsClearLine());
+  EXPECT_EQ(printed(stop.next()), RUN_OFF);
+  EXPECT_EQ(exchange(stop, ACKNOWLEDGED), Progress::Confirmed);
+}
+
+TEST(StopJob, anUpgradeWaitsForNoClearLine)
+{
+  drive::ProfileChanges changes;
+  changes.overrides_yaml = "{points: {free_run: {coil: 0x0009}}, sequences: {coast: [{free_run: 1}, {run: 0}]}}";
+  const drive::Drive full = shipped("omron_mx2", changes);
+  drive::Profile profile = full.profile();
+  profile.status.erase("run_seen");
+  profile.status.erase("running");
+  const drive::Drive drive(profile);
+  StopJob stop(drive, 1);
+  stop.request(at(0), StopMode::Decelerate);
+  stop.sent(at(1));
+  stop.done(ACKNOWLEDGED, true);
+  ASSERT_TRUE(stop.wantsClearLine());
+  stop.request(at(2), StopMode::Coast);
+  EXPECT_FALSE(stop.wantsClearLine());
+}
+
+TEST(StopJob, readBackDecidesWhoeverAcknowledgedTheWrite)
+{
+  const drive::Drive mx2 = shipped("omron_mx2");
+  StopJob stop(mx2, 1);
+  stop.request(at(0), StopMode::Decelerate);
+  stop.sent(at(1));
+  EXPECT_EQ(stop.done(ACKNOWLEDGED, true), Progress::GoesOn);
+  EXPECT_EQ(exchange(stop, RUN_IS_OFF), Progress::Confirmed);
+}
+
 TEST(StopJob, valueOfRunThatMeansNothingConfirmsNoStop)
 {
   drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());

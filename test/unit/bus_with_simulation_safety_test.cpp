@@ -25,6 +25,7 @@ scan_list:
 )";
 
 constexpr const char* RUN_ON = "01 05 00 00 FF 00";
+constexpr const char* RESET_ON = "01 05 00 03 FF 00";
 constexpr const char* RUN_OFF = "01 05 00 00 00 00";
 
 TEST(Safety, runsWhenCommandedAndStopsWhenCommandsEnd)
@@ -148,6 +149,27 @@ TEST(Safety, aTripTakesRunOffAtOnceSoThatAResetStartsNothing)
   bus.run(5.0);
   EXPECT_EQ(bus.count(RUN_ON), 0U) << "a stream that goes on must not start the motor after the reset";
   EXPECT_EQ(bus.motor("belt", "frequency"), 0.0);
+}
+
+TEST(Safety, aResetThatIsAskedForTwiceIsDoneOnceAndNoMotorStartsBeforeItsEnd)
+{
+  VirtualBus bus(ONE_BELT);
+  bus.settleIn();
+  bus.world("belt trip 7");
+  ASSERT_TRUE(bus.runUntil(2.0, [&] { return bus.status(0).monitor.faulted.value_or(false); }));
+  bus.run(2.0);
+  bus.clearFrames();
+  const auto first = bus.reset(0);
+  bus.runUntil(1.0, [&] { return bus.count(RESET_ON) == 1; });
+  const auto second = bus.reset(0);
+  EXPECT_TRUE(bus.wait(first).success);
+  EXPECT_TRUE(bus.wait(second).success);
+  bus.command(0, 0.0);
+  bus.stream(0, 20.0, 0.02, 5.0);
+  bus.run(2.0);
+  EXPECT_EQ(bus.count(RESET_ON), 1U) << "a second reset would go to a motor that was started after the first";
+  EXPECT_EQ(bus.count(RUN_ON), 1U);
+  EXPECT_EQ(bus.motor("belt", "run_coil"), 1);
 }
 
 TEST(Safety, anOfflineInverterIsStoppedOnItsReturnAndStaysLocked)

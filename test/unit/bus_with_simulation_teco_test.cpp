@@ -52,6 +52,8 @@ scan_list:
 constexpr const char* BROADCAST_STOP = "00 10 00 00 00 01 02 00 00";
 constexpr const char* STOP = "03 10 00 00 00 01 02 00 00";
 constexpr const char* FORWARD = "03 10 00 00 00 01 02 00 01";
+constexpr const char* SET_FREQUENCY = "03 10 00 01";
+constexpr const char* LOOP_BACK = "03 08";
 constexpr const char* REVERSE = "03 10 00 00 00 01 02 00 02";
 
 TEST(Teco, asShippedItTellsNothingAndRunsNothing)
@@ -109,6 +111,25 @@ TEST(Teco, stopWorksAsShipped)
   bus.run(3.0);
   const auto answer = bus.wait(bus.stop(0));
   EXPECT_TRUE(answer.success) << answer.message;
+}
+
+TEST(Teco, aLateReplyToARunFrameConfirmsNoStop)
+{
+  // The replies to all writes of 0000H look alike, and nobody can ask this drive whether RUN is on.
+  VirtualBus bus(ARMED);
+  bus.settleIn();
+  bus.stream(0, 20.0, 0.1, 5.0);
+  ASSERT_TRUE(bus.runUntil(3.0, [&] { return bus.count(SET_FREQUENCY) == 1; }));
+  // It executes the RUN, and is deaf until it has answered: the stop's frame is lost.
+  bus.world("mixer late 0.13 count 1 function 0x10");
+  ASSERT_TRUE(bus.runUntil(3.0, [&] { return bus.count(FORWARD) == 1; }));
+  const auto answer = bus.stop(0);
+  ASSERT_TRUE(bus.runUntil(3.0, [&] { return bus.count(STOP) == 1; }));
+  ASSERT_EQ(bus.motor("mixer", "run_command"), 1.0) << "the stop's first frame was not lost";
+  EXPECT_TRUE(bus.wait(answer).success);
+  EXPECT_EQ(bus.motor("mixer", "run_command"), 0.0);
+  EXPECT_GE(bus.count(STOP), 2U);
+  EXPECT_GE(bus.count(LOOP_BACK), 1U) << "only a loop-back shows that no other reply can be on its way";
 }
 
 TEST(Teco, withWhatTheUserSuppliesEverythingWorks)

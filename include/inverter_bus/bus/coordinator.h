@@ -102,6 +102,8 @@ private:
     Velocity,
     Job,
     Refresh,
+    /// Any read that is allowed now, so that the drive's own time-out does not pass; its answer is not used.
+    KeepAlive,
     Probe,
     Setting,
     Release
@@ -126,7 +128,8 @@ private:
     std::unique_ptr<Job> job;
     std::size_t inverter;
     TimePoint expires;
-    AnswerCallback callback;
+    /// One, or the callers of a reset that was asked for again while it was under way.
+    std::vector<AnswerCallback> callbacks;
     int tries = 0;
   };
   struct StopCall
@@ -166,6 +169,7 @@ private:
                            std::string& why, std::uint32_t& raw) const;
   void startJob(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound, AnswerCallback callback);
   bool refuseJob(std::size_t index, const AnswerCallback& callback);
+  bool joinReset(std::size_t index, const AnswerCallback& callback);
   void queueJob(CommandId id, TimePoint not_before);
   void advanceJob(TimePoint now, CommandId id, Job::Progress progress);
   void endJob(CommandId id, const Answer& answer);
@@ -185,6 +189,7 @@ private:
   Pick pickShutdown(TimePoint now);
   std::optional<Current> compose(TimePoint now, const Pick& pick);
   Current composeRefresh(TimePoint now, const Pick& pick);
+  std::optional<wire::Request> keepAlive(const Inverter& inverter) const;
   std::optional<Write> nextWrite(TimePoint now, const Inverter& inverter) const;
   std::optional<Current> composeVelocity(TimePoint now, const Pick& pick);
   std::optional<Current> composeJob(TimePoint now, const Pick& pick);

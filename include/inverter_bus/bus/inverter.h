@@ -42,7 +42,13 @@ public:
   {
     works_ = works_ || outcome == wire::Outcome::Ok;
     refused_ = refused_ || outcome == wire::Outcome::Exception;
-    ++misses_;
+    misses_ += missed_ ? 0 : 1;
+    missed_ = true;
+  }
+  /// Another request was answered: only now a loop-back that was not says something of the loop-back.
+  void otherAnswered()
+  {
+    missed_ = false;
   }
   /// The drive has come back: another one may stand there now.
   void tryAgain()
@@ -69,6 +75,8 @@ private:
   bool works_ = false;
   bool refused_ = false;
   unsigned misses_ = 0;
+  /// Counted already: a drive that is silent on everything misses once.
+  bool missed_ = false;
 };
 
 /// One inverter of the bus: its parts, its link, and what its words mean together.
@@ -99,6 +107,12 @@ public:
   bool offline() const;
   /// A complete status has come since start or return.
   bool known() const;
+  /// It answers again, but no complete status has come yet: to users it is still away.
+  bool unreadSinceReturn() const;
+  /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
+  std::optional<TimePoint> serveBy(Duration deadline_margin) const;
+  /// All reads that a refresh may be made of.
+  std::vector<drive::ReadBlock> reads() const;
   /// Silence up to this time is expected (after a trip reset).
   void expectSilence(TimePoint until);
 

@@ -49,7 +49,8 @@ public:
   Refusal setParameter(const std::string& code, double value, TimePoint now) override;
   Refusal parameter(const std::string& code, KeyValues& values) const override;
 
-  const Motor& motor() const;
+  const Motor& motor() const override;
+  bool runCommand() const override;
   bool tripped() const;
 
 protected:

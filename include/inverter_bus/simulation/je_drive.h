@@ -57,6 +57,8 @@ public:
   Refusal setBusy(TimePoint until, TimePoint now) override;
   Refusal setParameter(const std::string& code, double value, TimePoint now) override;
   Refusal parameter(const std::string& code, KeyValues& values) const override;
+  const Motor& motor() const override;
+  bool runCommand() const override;
 
 protected:
   TimePoint nextChange(TimePoint limit) const override;

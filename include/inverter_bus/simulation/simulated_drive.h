@@ -19,6 +19,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
+class Motor;
+
 /// A reply and how long the drive takes for it.
 struct Answer
 {
@@ -119,6 +121,10 @@ public:
   virtual Refusal setParameter(const std::string& code, double value, TimePoint now) = 0;
   /// @param[out] values what RAM and EEPROM hold, in the unit that the panel shows
   virtual Refusal parameter(const std::string& code, KeyValues& values) const = 0;
+  /// What the motor really does, as of the last advance().
+  virtual const Motor& motor() const = 0;
+  /// RUN as the drive holds it from the bus, through a trip too.
+  virtual bool runCommand() const = 0;
   /// @}
 
   /// What the drive and its motor really do; call advance() first.

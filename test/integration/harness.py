@@ -263,6 +263,8 @@ class Bench:
         if online:
             for inverter in self.inverters.values():
                 wait_for(lambda: inverter.status is not None or not self.driver.running(), lambda: self.driver.log())
+                if not self.driver.running():
+                    raise AssertionError('the driver ended:\n' + self.driver.log())
                 inverter.wait_online()
                 wait_for(inverter.connected, 'the subscription to ' + inverter.path + '/command')
         return self.driver

@@ -92,10 +92,14 @@ class PortErrors(unittest.TestCase):
         fail(True)
         belt.wait(lambda s: s.communication_error and s.known == 0, 'offline')
         self.assertEqual(self.bench.finding('bus', 'fails in use').level, 2)
-        belt.wait(lambda s: s.communication_error and s.error_id == InverterStatus.ERROR_PORT_LOST, 'the port is to blame')
+        wait_for(lambda: not self.bench.bus_status.connected, 'not connected')
+        self.bench['belt_2'].wait(lambda s: s.communication_error and s.error_id == InverterStatus.ERROR_PORT_LOST,
+                                  'the port is to blame')
         belt.forget()
         stays(lambda: self.bench.driver.running() and not self.bench.bus_status.connected and
-              self.bench.diagnostics['bus'].level == 2, 'the driver lives, and never takes the port for a good one', 3.0)
+              self.bench.diagnostics['bus'].level == 2,
+              lambda: 'the driver lives, and never takes the port for a good one: %s %s' %
+              (self.bench.bus_status, self.bench.driver.log()), 3.0)
         self.assertGreaterEqual(len(belt.seen()), 2, 'its status goes on')
         self.assertEqual(belt.seen(lambda s: not s.communication_error), [])
         self.assertLess(self.lines() - lines, MOST_LINES, self.bench.driver.log())

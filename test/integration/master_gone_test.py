@@ -88,8 +88,10 @@ class MasterGone(unittest.TestCase):
 
     def testTheMasterDiesAndComesBack(self):
         belt = self.bench['belt_1']
+        self.assertNotIn('ROS master', self.bench.finding('bus').message)
         MASTER.kill()
         self.assertGoesOn()
+        self.bench.finding('bus', 'the ROS master', 'does not answer')
         stays(lambda: self.bench.turns('belt_1') and self.bench.turns('belt_2'), 'run on under their streams', 1.0)
         # The dead man needs no master.
         self.streams[1].end()
@@ -100,6 +102,9 @@ class MasterGone(unittest.TestCase):
         wait_for(rosgraph.is_master_online, 'the ROS master, again')
         self.assertGoesOn()
         self.assertTrue(self.bench.turns('belt_1'))
+        # roscpp never registers again: it says so, once.
+        self.bench.finding('bus', 'does not know this node', 'restart the node')
+        self.assertEqual(self.bench.driver.log().count('does not know this node'), 1, self.bench.driver.log())
         # Whoever was connected before still is: service calls and commands.
         answer = self.stop(mode=0)
         self.assertTrue(answer.success, answer.message)

@@ -292,8 +292,9 @@ TEST(Safety, shutdownWritesEveryStopBeforeItReadsTheFirstBack)
   VirtualBus bus(TWO_BELTS);
   bus.settleIn();
   bus.stream(0, 20.0, 0.1, 10.0);
-  bus.stream(1, 20.0, 0.1, 10.0);
+  bus.stream(1, 3.0, 0.1, 10.0);
   bus.run(2.0);
+  ASSERT_EQ(bus.motor("belt_2", "run_coil"), 1);
   bus.clearFrames();
   bus.coordinator().beginShutdown(bus.now());
   EXPECT_TRUE(bus.runUntil(2.0, [&] { return bus.coordinator().shutdownDone(bus.now()); }));

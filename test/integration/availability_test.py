@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 """What is not there: a port that is missing, unplugged or in use, and an inverter that is offline."""
 import contextlib
-import glob
 import os
 import time
 import unittest
 
 import rostest
 import rospy
-from harness import Bench, Stream, belts, init, is_nan, stays, wait_for
+from harness import Bench, belts, init, is_nan, stays, wait_for
 from inverter_bus.msg import InverterStatus
 
 
@@ -90,7 +89,8 @@ class Availability(unittest.TestCase):
         self.bench.start_driver()
         dead, live = ('belt_1', 'belt_3'), ('belt_2', 'belt_4')
         with contextlib.ExitStack() as streams:
-            self.run_all(streams)
+            for stream in self.bench.run_all(20.0):
+                streams.enter_context(stream)
             healthy = self.rate(self.bench['belt_2'], 12)
             for name in dead:
                 self.bench.simulate(name + ' offline')
@@ -117,7 +117,8 @@ class Availability(unittest.TestCase):
         self.bench = Bench(belts(4))
         self.bench.start_driver()
         with contextlib.ExitStack() as streams:
-            self.run_all(streams)
+            for stream in self.bench.run_all(20.0):
+                streams.enter_context(stream)
             self.bench.simulate('bus silent on')
             for inverter in self.bench.inverters.values():
                 inverter.wait(lambda s: s.communication_error and s.known == 0, 'offline')
@@ -126,7 +127,7 @@ class Availability(unittest.TestCase):
             for name in self.bench.inverters:
                 self.assertEqual(self.bench.finding(name, 'offline').level, 2)
             # Rule 4.11.
-            wait_for(lambda: [text for text in self.traces() if 'went offline' in text], 'a flight recorder file')
+            wait_for(lambda: [text for text in self.bench.traces() if 'went offline' in text], 'a flight recorder file')
             called = time.monotonic()
             answer = self.bench.stop_all()
             seconds = time.monotonic() - called
@@ -136,22 +137,6 @@ class Availability(unittest.TestCase):
             print('measured: all drives dead, ~stop answered after %.2f s' % seconds)
             self.assertLess(seconds, 2.0 + 3.0)
             self.assertBackWithoutRun(self.bench.inverters)
-
-    def run_all(self, streams):
-        """Runs every inverter and leaves the streams of commands going."""
-        self.bench.unlock()
-        for inverter in self.bench.inverters.values():
-            streams.enter_context(Stream(inverter, 20.0))
-        for inverter in self.bench.inverters.values():
-            inverter.wait(lambda s: s.running and abs(s.velocity - 20.0) < 0.4, 'at 20')
-
-    def traces(self):
-        """What the files of the flight recorder say."""
-        texts = []
-        for path in glob.glob(os.path.join(self.bench.parameters['trace_directory'], '*')):
-            with open(path, errors='replace') as stream:
-                texts.append(stream.read())
-        return texts
 
     def assertBackWithoutRun(self, names):
         """Answering again, they are found, stopped and locked, whatever their streams say."""

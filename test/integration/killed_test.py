@@ -30,7 +30,7 @@ class Killed(unittest.TestCase):
                    dict({'name': 'mixer', 'node': 3, 'drive': 'teco_7200ma'}, **TECO_ARMED)]
         self.bench = Bench(entries, ramps=False, defaults={'max_velocity': 50.0}, simulation=SET_UP, **LINE)
         self.bench.start_driver()
-        self.streams = [self.bench.run(name, 30.0) for name in self.bench.inverters]
+        self.streams = self.bench.run_all(30.0)
 
     def tearDown(self):
         for stream in self.streams:
@@ -96,9 +96,23 @@ class Killed(unittest.TestCase):
             self.assertGreater(seconds, TIMEOUTS[name] - 0.6, name)
             self.assertLess(seconds, TIMEOUTS[name] + RAMP + 3.0, name)
             self.assertTrue(self.runIsOn(name), name + ': the RUN is left over')
+        before = self.bench.frames(1)[-1].time
         self.restart()
+        self.assertStoppedAtOnce(before)
         self.assertNothingRuns()
         self.assertUsable()
+
+    def assertStoppedAtOnce(self, before):
+        """An MX2 that runs on by itself as soon as it hears something does so from our first request to our stop."""
+        def stop():
+            sent = [frame for frame in self.bench.frames() if frame.time > before and frame.sender == 'master' and
+                    frame.station == '1']
+            stops = [frame for frame in sent if frame.text.startswith('01 05 00 00 00 00')]
+            return stops[0].time - sent[0].time if stops else None
+
+        seconds = wait_for(stop, "the conveyor's stop")
+        print('measured: restarted, from the first request to a drive with a RUN left over to its stop %.3f s' % seconds)
+        self.assertLess(seconds, 1.0)
 
     def testADriverThatIsBackBeforeTheTimeOutsClearsTheLeftoverRunOfRunningMotors(self):
         for name in ('conveyor', 'pump', 'mixer'):

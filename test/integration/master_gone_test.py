@@ -48,7 +48,7 @@ class MasterGone(unittest.TestCase):
         self.bench.simulate('list')
         self.stop = self.persistent('stop', Stop)
         self.assertTrue(self.stop(mode=0).success)
-        self.streams = [self.bench.run(name, 20.0) for name in self.bench.inverters]
+        self.streams = self.bench.run_all(20.0)
 
     def tearDown(self):
         for stream in self.streams:

@@ -33,7 +33,7 @@ class MidExchange(unittest.TestCase):
         for inverter in self.bench.inverters.values():
             inverter.forget()
         self.bench.start_driver()
-        self.streams = [self.bench.run(name, 30.0) for name in ('belt_1', 'belt_2')]
+        self.streams = self.bench.run_all(30.0, 'belt_1', 'belt_2')
 
     def tearDown(self):
         for stream in self.streams:
@@ -126,6 +126,22 @@ class MidExchange(unittest.TestCase):
         request, started = self.inFlight()
         xmlrpc.client.ServerProxy(api).shutdown('/mid_exchange_test', 'as rosnode kill does it')
         self.assertStoppedNext('rosnode kill', request, started)
+
+    def testAStopThatMissesItsBoundLeavesAFlightRecorderFile(self):
+        """Rule 4.11: the whole driver is held up, as by a machine that swaps, with an accepted stop in its hands."""
+        _, started = self.inFlight()
+        calling = threading.Thread(target=self.bench['belt_1'].stop, daemon=True)
+        calling.start()
+        # Long enough for the call to arrive, and shorter than the exchange in flight.
+        time.sleep(0.4 * PATIENCE_OF_THE_LINE)
+        self.bench.driver.signal(signal.SIGSTOP)
+        # Until the stop is later than the longest exchange allows.
+        time.sleep(max(0.0, started + 2.0 * PATIENCE_OF_THE_LINE - time.monotonic()))
+        self.bench.driver.signal(signal.SIGCONT)
+        wait_for(lambda: self.bench.real('belt_1')['run_coil'] == '0', 'the stop')
+        wait_for(lambda: [text for text in self.bench.traces() if 'to the wire' in text], 'a flight recorder file')
+        calling.join(10.0)
+        wait_for(lambda: self.bench.bus_status.stop_latency_max > PATIENCE_OF_THE_LINE, 'the latency in bus_status')
 
 
 if __name__ == '__main__':

@@ -61,10 +61,10 @@ TimePoint BusLoop::openPort()
   return next_open_;
 }
 
+/// One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
 void BusLoop::lose()
 {
   line_.close();
-  next_open_ = clock_.now();
 }
 
 TimePoint BusLoop::step()

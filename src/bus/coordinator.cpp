@@ -3,6 +3,7 @@
 #include "inverter_bus/bus/coordinator.h"
 
 #include <algorithm>
+#include <utility>
 
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
@@ -26,6 +27,12 @@ constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
 constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
+
+/// At shutdown every stop is written before the first of them is read back: no motor waits for another's confirmation.
+bool goesBefore(const StopJob& stop, const StopJob& other)
+{
+  return std::make_pair(stop.attempts(), stop.written()) < std::make_pair(other.attempts(), other.written());
+}
 }  // namespace
 
 Coordinator::Coordinator(const Configuration& configuration, const wire::Line& line)
@@ -199,7 +206,7 @@ Pick Coordinator::pickShutdown(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     const bool live = inverter->stop.pending() && !inverter->offline();
-    if (live && (best == nullptr || inverter->stop.attempts() < best->stop.attempts()))
+    if (live && (best == nullptr || goesBefore(inverter->stop, best->stop)))
     {
       best = inverter.get();
     }

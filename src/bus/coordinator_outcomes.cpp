@@ -14,6 +14,8 @@ namespace
 {
 // A velocity unit that newer and newer targets keep going makes room for others after so many frames per inverter.
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
+// A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
+constexpr double PORT_WORKS_AFTER_S = 3.0;
 
 bool alive(const wire::Reply& reply)
 {
@@ -49,6 +51,10 @@ void Coordinator::done(const wire::Reply& reply)
   {
     portLost(reply.finished_at);
     return;
+  }
+  if (reply.outcome != wire::Outcome::Timeout || reply.finished_at - opened_at_ > seconds(PORT_WORKS_AFTER_S))
+  {
+    portWorks();
   }
   last_error_ = reply.outcome == wire::Outcome::Ok ? std::uint16_t{ 0 } : reply.error_id;
   if (current.purpose == Purpose::Broadcast)
@@ -512,25 +518,44 @@ void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bo
 void Coordinator::portOpened(TimePoint now)
 {
   connected_ = true;
-  port_complained_ = false;
-  port_error_.clear();
-  last_error_ = 0;
+  opened_at_ = now;
+  port_works_ = false;
   if (ever_opened_)
   {
     ++reconnects_;
   }
   ever_opened_ = true;
   scheduler_->restartCycle(now);
-  log(Level::Ok, "port " + configuration_.bus.port + " is open");
+  if (!port_failing_)
+  {
+    port_complained_ = false;
+    port_error_.clear();
+    last_error_ = 0;
+    log(Level::Ok, "port " + configuration_.bus.port + " is open");
+  }
   for (const auto& inverter : inverters_)
   {
     inverter->refresh_not_before = now;
   }
 }
 
+/// Something was read from it, or it has been open for long: an adapter with I/O errors opens too.
+void Coordinator::portWorks()
+{
+  port_works_ = true;
+  if (port_failing_)
+  {
+    port_failing_ = false;
+    port_complained_ = false;
+    port_error_.clear();
+    log(Level::Ok, "port " + configuration_.bus.port + " works again");
+  }
+}
+
 void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_use)
 {
   last_error_ = wire::ERROR_PORT_LOST;
+  port_failing_ = false;
   port_error_ = error;
   if (!port_complained_)
   {
@@ -544,9 +569,11 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
 void Coordinator::portLost(TimePoint now)
 {
   current_.reset();
-  if (connected_)
+  if (connected_ && !port_failing_)
   {
-    port_error_ = "port " + configuration_.bus.port + " is gone";
+    port_failing_ = !port_works_;
+    port_error_ = "port " + configuration_.bus.port +
+                  (port_failing_ ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone");
     log(Level::Error, port_error_ + "; the node keeps trying");
     port_complained_ = true;
   }

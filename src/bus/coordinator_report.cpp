@@ -36,7 +36,7 @@ void Coordinator::publish(TimePoint now, const Inverter& inverter)
 BusStatus Coordinator::busStatus(TimePoint now) const
 {
   BusStatus status;
-  status.connected = connected_;
+  status.connected = connected_ && !port_failing_;
   status.busy = connected_;
   status.node = last_node_;
   status.error_id = group_error_ != 0 ? group_error_ : last_error_;
@@ -80,7 +80,7 @@ Report Coordinator::report(TimePoint now) const
 {
   Report report;
   report.bus = busStatus(now);
-  if (!connected_)
+  if (!report.bus.connected)
   {
     report.findings.push_back(
         { Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" : port_error_) +

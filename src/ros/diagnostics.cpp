@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include <ros/names.h>
@@ -77,8 +78,9 @@ void summarize(const std::vector<bus::Finding>& findings, const std::string& in_
   entry.summary(levelOf(sorted.empty() ? bus::Level::Ok : sorted.front().level), text.empty() ? in_order : text);
 }
 
-Diagnostics::Diagnostics(const bus::BusConfig& config, const bus::Bus& bus, const Commands& commands)
-  : config_(config), bus_(bus), commands_(commands)
+Diagnostics::Diagnostics(const bus::BusConfig& config, const bus::Bus& bus, const Commands& commands,
+                         const MasterWatch& master_watch)
+  : config_(config), bus_(bus), commands_(commands), master_watch_(master_watch)
 {
   updater_.setHardwareID(config_.port);
   updater_.add("bus", [this](Entry& entry) { showBus(entry); });
@@ -134,6 +136,10 @@ void Diagnostics::showBus(Entry& entry) const
 {
   std::vector<bus::Finding> findings = report_.findings;
   addPublishers(commands_.groupPublishers(), "command", findings);
+  if (const std::optional<bus::Finding> finding = master_watch_.finding())
+  {
+    findings.push_back(*finding);
+  }
   summarize(findings, report_.bus.connected ? "connected" : "not connected", entry);
   addValues(report_.values, entry);
 }

@@ -15,6 +15,7 @@
 #include "inverter_bus/ros/commands.h"
 #include "inverter_bus/ros/diagnostics.h"
 #include "inverter_bus/ros/log.h"
+#include "inverter_bus/ros/master_watch.h"
 #include "inverter_bus/ros/parameters.h"
 #include "inverter_bus/ros/publishing.h"
 #include "inverter_bus/ros/services.h"
@@ -110,7 +111,8 @@ int runNode(Lifetime& lifetime)
   logStart(config, bus);
   Services services(node, config, bus, traces);
   Commands commands(node, config, bus);
-  Diagnostics diagnostics(config, bus, commands);
+  MasterWatch master_watch;
+  Diagnostics diagnostics(config, bus, commands, master_watch);
   // Everything that may wait for the master lies behind: from here on the end is ours.
   lifetime.busIsRunning();
   bus.start();
@@ -122,6 +124,7 @@ int runNode(Lifetime& lifetime)
   services.drain(ANSWER_TIME);
   commands.stop();
   diagnostics.stop();
+  master_watch.stop();
   traces.stop();
   publishing.stop();
   logEnd(status, config, unconfirmed);

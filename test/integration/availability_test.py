@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """What is not there: a port that is missing, unplugged or in use, and an inverter that is offline."""
+import contextlib
 import os
 import time
 import unittest
@@ -81,6 +82,80 @@ class Availability(unittest.TestCase):
         status = dead.wait(lambda s: not s.communication_error and s.known, 'back')
         self.assertLess(time.monotonic() - back, 4.0)
         self.assertTrue(status.locked)
+
+    def testHalfOfTheDrivesDie(self):
+        """Two of four, running. The others run on and stop at once; the dead get their stop when they are back."""
+        self.bench = Bench(belts(4))
+        self.bench.start_driver()
+        dead, live = ('belt_1', 'belt_3'), ('belt_2', 'belt_4')
+        with contextlib.ExitStack() as streams:
+            for stream in self.bench.run_all(20.0):
+                streams.enter_context(stream)
+            healthy = self.rate(self.bench['belt_2'], 12)
+            for name in dead:
+                self.bench.simulate(name + ' offline')
+            for name in dead:
+                self.bench[name].wait(lambda s: s.communication_error, 'offline')
+            wait_for(lambda: list(bytearray(self.bench.bus_status.offline_nodes)) == [1, 3], 'named in bus_status')
+            self.assertGreater(self.rate(self.bench['belt_2'], 12), 0.7 * healthy)
+            for name in live:
+                self.assertTrue(self.bench.turns(name))
+                self.assertFalse(self.bench[name].status.locked)
+            called = time.monotonic()
+            self.assertTrue(self.bench['belt_2'].stop().success)
+            print('measured: half of the drives dead, stop of a live one confirmed after %.3f s' %
+                  (time.monotonic() - called))
+            self.assertEqual(self.bench.real('belt_2')['run_coil'], '0')
+            self.assertTrue(self.bench.turns('belt_4'))
+            for name in dead:
+                self.assertEqual(self.bench.real(name)['run_coil'], '1', 'nothing reaches the dead')
+            self.assertBackWithoutRun(dead)
+            self.assertTrue(self.bench.turns('belt_4'), 'undisturbed')
+
+    def testAllDrivesDie(self):
+        """The line is cut while everything runs: all are offline, calls are answered in time, and nothing runs later."""
+        self.bench = Bench(belts(4))
+        self.bench.start_driver()
+        with contextlib.ExitStack() as streams:
+            for stream in self.bench.run_all(20.0):
+                streams.enter_context(stream)
+            self.bench.simulate('bus silent on')
+            for inverter in self.bench.inverters.values():
+                inverter.wait(lambda s: s.communication_error and s.known == 0, 'offline')
+            wait_for(lambda: list(bytearray(self.bench.bus_status.offline_nodes)) == [1, 2, 3, 4], 'named in bus_status')
+            self.assertTrue(self.bench.bus_status.connected)
+            for name in self.bench.inverters:
+                self.assertEqual(self.bench.finding(name, 'offline').level, 2)
+            # Rule 4.11.
+            wait_for(lambda: [text for text in self.bench.traces() if 'went offline' in text], 'a flight recorder file')
+            called = time.monotonic()
+            answer = self.bench.stop_all()
+            seconds = time.monotonic() - called
+            self.assertFalse(answer.success)
+            for name in self.bench.inverters:
+                self.assertIn(name, answer.message)
+            print('measured: all drives dead, ~stop answered after %.2f s' % seconds)
+            self.assertLess(seconds, 2.0 + 3.0)
+            self.assertBackWithoutRun(self.bench.inverters)
+
+    def assertBackWithoutRun(self, names):
+        """Answering again, they are found, stopped and locked, whatever their streams say."""
+        for name in names:
+            self.bench[name].forget()
+        self.bench.simulate('bus silent off')
+        for name in names:
+            self.bench.simulate(name + ' online')
+        back = time.monotonic()
+        for name in names:
+            self.bench[name].wait(lambda s: not s.communication_error and s.known, 'back')
+        seconds = time.monotonic() - back
+        print('measured: %d dead drives answer again, all of them back after %.2f s' % (len(list(names)), seconds))
+        self.assertLess(seconds, 3.0 + 3.0)  # later when many are dead at once, and on a busy machine
+        for name in names:
+            wait_for(lambda: self.bench.real(name)['run_coil'] == '0', 'RUN of %s taken off' % name)
+            self.bench[name].wait(lambda s: s.locked and not s.running, 'locked and at rest')
+        stays(lambda: not any(self.bench.real(name)['run_coil'] == '1' for name in names),
+              'no RUN under streams of commands', 1.0)
 
     def rate(self, inverter, number=30):
         """Status messages per second."""

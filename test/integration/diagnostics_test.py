@@ -5,7 +5,7 @@ import unittest
 import rostest
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
-from harness import Bench, belts, init, wait_for
+from harness import Bench, Stream, belts, init, wait_for
 
 SAFE = {'C076': 4, 'C077': 2.0}  # on communication loss: decelerate after 2 s
 
@@ -14,7 +14,9 @@ class Diagnostics(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         # The pauses are where a second master's frame stands alone; without them it mostly collides with ours.
-        cls.bench = Bench(belts(3), interval=0.5, simulation={'belt_1': {'parameters': SAFE},
+        entries = belts(3)
+        entries[1]['stop_unexpected_motion'] = True
+        cls.bench = Bench(entries, interval=0.5, simulation={'belt_1': {'parameters': SAFE},
                                                               'belt_2': {'parameters': {'C076': 2, 'C077': 0.0}},
                                                               'belt_3': {'parameters': dict(SAFE, A002=2)}})
         cls.bench.start_driver()
@@ -81,6 +83,57 @@ class Diagnostics(unittest.TestCase):
         finally:
             self.bench.simulate('belt_1 panel_release')
         self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def testAMotorThatASecondMasterSetsRunningIsStoppedOnlyWhereThatIsAskedFor(self):
+        """Rule 4.7: belt_2 has stop_unexpected_motion, belt_1 has not."""
+        for name in ('belt_1', 'belt_2'):
+            self.bench[name].wait(lambda s: s.known and not s.running, 'at rest')
+        for station, name in ((2, 'belt_2'), (1, 'belt_1')):
+            self.setRunning(station, name)
+        try:
+            wait_for(lambda: self.bench.real('belt_2')['run_coil'] == '0', 'the RUN of belt_2 is taken off')
+            self.bench['belt_2'].wait(lambda s: s.locked, 'locked')
+            self.bench.finding('belt_1', 'runs without a command of this node')
+            self.assertEqual(self.bench.real('belt_1')['run_coil'], '1', 'left alone')
+        finally:
+            self.assertTrue(self.bench['belt_1'].stop().success)
+        self.bench['belt_1'].wait(lambda s: not s.running, 'at rest')
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def setRunning(self, station, name):
+        """Another master writes the coil of RUN, until its frame met no other."""
+        def sent():
+            return int(self.bench.simulate('bus show').split('foreign=')[1])
+
+        def runs():
+            before = sent()
+            self.bench.simulate('bus foreign %02X 05 00 00 FF 00' % station)
+            wait_for(lambda: sent() > before, "the other master's frame on the line")
+            return any(frame.text.startswith('%02X 05 00 00 FF 00' % station) and frame.sender == 'drive'
+                       for frame in self.bench.frames(20))
+
+        wait_for(runs, name + ' set running by another master')
+
+    def testADriveThatIsTakenOverAtItsPanelWhileItRunsWarns(self):
+        """Rule 4.7: at another speed, and in the other direction."""
+        with self.bench.run('belt_1', 10.0):
+            try:
+                self.bench.simulate('belt_1 panel 15')
+                self.bench.finding('belt_1', 'another speed than commanded')
+                self.bench.simulate('belt_1 panel -15')
+                self.bench.finding('belt_1', 'turns in the wrong direction')
+            finally:
+                self.bench.simulate('belt_1 panel_release')
+        self.bench['belt_1'].wait(lambda s: not s.run_command and not s.running, 'stopped by the dead man')
+        self.wait_level('belt_1', DiagnosticStatus.OK)
+
+    def testAMotorThatDoesNotMoveAlthoughRunIsOnWarns(self):
+        """belt_3 takes its RUN from the panel (A002): the bus can write what it wants."""
+        self.bench.unlock('belt_3')
+        with Stream(self.bench['belt_3'], 10.0):
+            self.bench.finding('belt_3', 'does not move although RUN is on')
+            self.assertFalse(self.bench.turns('belt_3'))
+        self.bench['belt_3'].wait(lambda s: not s.run_command, 'stopped by the dead man')
 
     def testASecondMasterWarns(self):
         def warns():

@@ -2,6 +2,7 @@
 
 A test says what it wants to see and how long it is willing to wait; nothing here sleeps for a fixed time and hopes.
 """
+import glob
 import itertools
 import math
 import os
@@ -263,6 +264,8 @@ class Bench:
         if online:
             for inverter in self.inverters.values():
                 wait_for(lambda: inverter.status is not None or not self.driver.running(), lambda: self.driver.log())
+                if not self.driver.running():
+                    raise AssertionError('the driver ended:\n' + self.driver.log())
                 inverter.wait_online()
                 wait_for(inverter.connected, 'the subscription to ' + inverter.path + '/command')
         return self.driver
@@ -308,6 +311,14 @@ class Bench:
         entry = self.diagnostics.get(name)
         return next((value.value for value in entry.values if value.key == key), '') if entry else ''
 
+    def traces(self):
+        """What the files of the flight recorder say."""
+        texts = []
+        for path in glob.glob(os.path.join(self.parameters['trace_directory'], '*')):
+            with open(path, errors='replace') as stream:
+                texts.append(stream.read())
+        return texts
+
     def stop_all(self, mode=0):
         path = self.driver_name + '/stop'
         rospy.wait_for_service(path, PATIENCE)
@@ -352,6 +363,16 @@ class Bench:
         self.inverters[name].wait(lambda s: s.running and abs(s.velocity - velocity) < 0.02 * abs(velocity),
                                   'at %g' % velocity)
         return stream
+
+    def run_all(self, velocity, *names):
+        """The same for several at once (all of them if none is named); returns their streams."""
+        names = names or tuple(self.inverters)
+        self.unlock(*names)
+        streams = [Stream(self.inverters[name], velocity) for name in names]
+        for name in names:
+            self.inverters[name].wait(lambda s: s.running and abs(s.velocity - velocity) < 0.02 * abs(velocity),
+                                      'at %g' % velocity)
+        return streams
 
     def close(self):
         for inverter in self.inverters.values():

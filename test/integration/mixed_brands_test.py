@@ -120,6 +120,15 @@ class MixedBrands(Brands):
     def setUp(self):
         self.rest()
 
+    def testDrivesThatWouldRunOnWithoutCommunicationAreNamedWithWhatToSet(self):
+        """All as they leave the factory. Where the setting can't be read, that is said."""
+        self.bench.finding('conveyor', 'C076', 'C077', '0')
+        self.bench.finding('crusher', 'runs on when communication is lost (assumed)', 'C076', 'C077')
+        self.bench.finding('pump', 'F803', 'F804', '2')
+        # A 7200MA decelerates after 1 s by itself; the node can't read whether it still does.
+        self.assertNotIn('runs on', self.bench.finding('mixer').message)
+        self.assertIn('assumed 1 s', self.bench.value('mixer', 'drive time-out'))
+
     def testTheMx2MovesChangesReversesAndStops(self):
         self.moveChangeReverseStop('conveyor')
 

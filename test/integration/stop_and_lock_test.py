@@ -105,7 +105,7 @@ class StopAndLock(unittest.TestCase):
             self.assertEqual(self.bench.real(name)['run_coil'], '0')
             self.bench[name].wait(lambda s: s.locked and not s.running, 'locked and at rest')
 
-    def testAStopGoesBeforeAStormOfParameterReads(self):
+    def testAStopGoesBeforeAStormOfParameters(self):
         """On a driver of its own, whose longest stop latency no other test has made."""
         bench = Bench(belts(4))
         try:
@@ -119,14 +119,20 @@ class StopAndLock(unittest.TestCase):
             bench.close()
 
     def storm(self, bench):
-        """Ten stops while twelve threads read parameters as fast as they can."""
+        """Ten stops while twelve threads read and write parameters and read trip memories as fast as they can."""
         ended = threading.Event()
 
-        def read(name):
+        def call(belt, kind):
             while not ended.is_set():
-                bench[name].read_parameter('F002')
+                if kind == 0:
+                    belt.read_parameter('F002')
+                elif kind == 1:
+                    belt.write_parameter('F003', 0.5)
+                else:
+                    belt.read_faults()
 
-        threads = [threading.Thread(target=read, args=('belt_%d' % (n % 4 + 1),), daemon=True) for n in range(12)]
+        threads = [threading.Thread(target=call, args=(bench['belt_%d' % (n % 4 + 1)], n % 3), daemon=True)
+                   for n in range(12)]
         for thread in threads:
             thread.start()
         try:

@@ -309,6 +309,23 @@ TEST(Safety, shutdownStopsWhatMayRunAndConfirms)
   EXPECT_EQ(bus.command(0, 20.0), bus::ERROR_SHUTTING_DOWN);
 }
 
+TEST(Safety, shutdownWritesEveryStopBeforeItReadsTheFirstBack)
+{
+  VirtualBus bus(TWO_BELTS);
+  bus.settleIn();
+  bus.stream(0, 20.0, 0.1, 10.0);
+  bus.stream(1, 3.0, 0.1, 10.0);
+  bus.run(2.0);
+  ASSERT_EQ(bus.motor("belt_2", "run_coil"), 1);
+  bus.clearFrames();
+  bus.coordinator().beginShutdown(bus.now());
+  EXPECT_TRUE(bus.runUntil(2.0, [&] { return bus.coordinator().shutdownDone(bus.now()); }));
+  const std::vector<std::string> sent = bus.requests();
+  ASSERT_GE(sent.size(), 4U);
+  EXPECT_EQ(sent[0], "01 05 00 00 00 00");
+  EXPECT_EQ(sent[1], "02 05 00 00 00 00");
+}
+
 TEST(Safety, aTripIsActedUponAlthoughTheRestOfTheStatusIsLost)
 {
   VirtualBus bus(ONE_BELT);

@@ -211,6 +211,7 @@ private:
   void doneRefresh(const Current& current, const wire::Reply& reply);
   void doneSetting(const Current& current, const wire::Reply& reply);
   bool repeat(int& tries, const wire::Reply& reply) const;
+  void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void judgeRefresh(TimePoint now, Inverter& inverter);
@@ -234,6 +235,11 @@ private:
   std::uint16_t loopback_number_ = 0;
 
   bool connected_ = false;
+  TimePoint opened_at_;
+  /// Since it was opened.
+  bool port_works_ = false;
+  /// It can be opened, and then fails before anything was read from it.
+  bool port_failing_ = false;
   bool port_complained_ = false;
   std::string port_error_;
   std::uint64_t reconnects_ = 0;

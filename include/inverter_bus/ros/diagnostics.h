@@ -12,6 +12,7 @@
 
 #include "inverter_bus/bus/bus.h"
 #include "inverter_bus/ros/commands.h"
+#include "inverter_bus/ros/master_watch.h"
 #include "inverter_bus/ros/steady_event.h"
 
 namespace inverter_bus
@@ -22,7 +23,8 @@ namespace ros_node
 class Diagnostics
 {
 public:
-  Diagnostics(const bus::BusConfig& config, const bus::Bus& bus, const Commands& commands);
+  Diagnostics(const bus::BusConfig& config, const bus::Bus& bus, const Commands& commands,
+              const MasterWatch& master_watch);
   /// As stop().
   ~Diagnostics();
 
@@ -39,6 +41,7 @@ private:
   const bus::BusConfig config_;
   const bus::Bus& bus_;
   const Commands& commands_;
+  const MasterWatch& master_watch_;
   bus::Report report_;  ///< of this round; diagnostics thread only
   diagnostic_updater::Updater updater_;
   SteadyEvent stopping_;

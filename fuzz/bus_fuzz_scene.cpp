@@ -22,6 +22,7 @@ constexpr double HZ_APART = 5.5;
 constexpr double RANGE_HZ = 3.5;
 // More than any request and its reply have together in bytes, a read of a trip memory included.
 constexpr double LONGEST_FRAMES = 90.0;
+constexpr double PROBE_FRAME = 24.0;  // characters
 constexpr double REPLY_SLACK_S = 0.03;  // wire::Line waits so much longer for the rest of a reply that has begun
 constexpr double PROFILE_DELAY_S = 0.01;
 
@@ -266,6 +267,16 @@ Duration Scene::longestExchange() const
     longest = std::max(longest, facts.response_timeout + facts.own_delay);
   }
   return 3 * gap() + seconds(longest + PROFILE_DELAY_S + REPLY_SLACK_S + LONGEST_FRAMES * character);
+}
+
+Duration Scene::longestProbe() const
+{
+  double longest = 0.0;
+  for (const InverterFacts& facts : inverters)
+  {
+    longest = std::max(longest, facts.response_timeout + facts.own_delay);
+  }
+  return 2 * gap() + seconds(longest + PROBE_FRAME * character);
 }
 
 const std::vector<std::string>& sceneNames()

@@ -60,6 +60,8 @@ struct Scene
 
   /// The longest exchange that this bus can make, from its figures alone.
   Duration longestExchange() const;
+  /// The longest time that a probe which nobody answers takes.
+  Duration longestProbe() const;
   /// Silence before a request.
   Duration gap() const;
 };

@@ -416,6 +416,7 @@ void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
     return;
   }
   settings.restart();
+  refresh.restartNoted();
   // What was selected for its block read may count only now.
   block_note_.clear();
   refresh.useBlock(std::nullopt);

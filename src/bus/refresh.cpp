@@ -423,6 +423,11 @@ const drive::Monitor& Refresh::words() const
   return scratch_;
 }
 
+void Refresh::restartNoted()
+{
+  scratch_.restarted.reset();
+}
+
 TimePoint Refresh::wordsSentAt() const
 {
   return scratch_sent_at_;

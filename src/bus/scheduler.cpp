@@ -23,7 +23,10 @@ constexpr double LONGEST_SLEEP_S = 0.25;
 }  // namespace
 
 Scheduler::Scheduler(const Settings& settings)
-  : settings_(settings), stop_pending_(settings.inverters, false), last_stop_exchange_(settings.inverters, 0)
+  : settings_(settings)
+  , stop_pending_(settings.inverters, false)
+  , last_stop_exchange_(settings.inverters, 0)
+  , silent_at_deadline_(settings.inverters, false)
 {
 }
 
@@ -328,6 +331,8 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
 
 std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
 {
+  // One that did not answer when its time came lets the others go before it is tried again.
+  const auto key = [&](std::size_t index) { return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by); };
   std::optional<std::size_t> most_urgent;
   for (std::size_t index = 0; index < views.size(); ++index)
   {
@@ -336,7 +341,7 @@ std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<Inv
     {
       continue;
     }
-    if (!most_urgent || *view.serve_by < *views[*most_urgent].serve_by)
+    if (!most_urgent || key(index) < key(*most_urgent))
     {
       most_urgent = index;
     }
@@ -505,7 +510,9 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
         refreshed_in_cycle_ = true;
         cursor_ += more ? 0 : 1;
       }
-      noteHalfRefresh(pick, more);
+      silent_at_deadline_[pick.inverter] = !answered;
+      // A repeat has no right to the next exchange: another drive's time may come meanwhile.
+      noteHalfRefresh(pick, more && answered);
       break;
     case Pick::What::Background:
       exchanges_without_background_ = 0;

@@ -958,6 +958,30 @@ TEST(Scheduler, driveWhoseTimeOutIsNearestGoesFirst)
   EXPECT_EQ(VirtualLine::name(line.next()), "R2");
 }
 
+TEST(Scheduler, driveThatIsSilentWhenItsTimeHasComeLetsTheOthersGoFirst)
+{
+  VirtualLine line(3);
+  line.views[0].serve_by = at(100);
+  line.views[2].serve_by = at(900);
+  line.dead = { 0 };
+  line.now = at(1000);
+  EXPECT_EQ(line.exchange(), "R0");
+  EXPECT_EQ(line.exchange(), "R2") << "0 is over its time by far, and was tried a moment ago";
+}
+
+TEST(Scheduler, repeatOfALostReadGivesWayToADriveWhoseTimeHasCome)
+{
+  VirtualLine line(3);
+  line.views[0].serve_by = at(900);
+  line.views[2].serve_by = at(1050);
+  line.now = at(1000);
+  const Pick lost = line.next();
+  ASSERT_EQ(VirtualLine::name(lost), "R0");
+  line.now = at(1110);
+  line.scheduler.done(lost, at(1000), at(1110), true, false);
+  EXPECT_EQ(VirtualLine::name(line.next()), "R2");
+}
+
 TEST(Scheduler, driveIsNotServedBeforeItsTurnWhileItsTimeOutIsFar)
 {
   VirtualLine line(3);

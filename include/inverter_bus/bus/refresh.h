@@ -58,6 +58,9 @@ public:
   /// The same of the refresh under way: what has come so far.
   const drive::Monitor& words() const;
   TimePoint wordsSentAt() const;
+  /// The marker of a restart that was just read is dealt with: the rest of this refresh must not find it once more, after
+  /// the drive has been told what it had forgotten.
+  void restartNoted();
   TimePoint stamp() const;
   bool hasStamp() const;
   /// Nothing that was read counts any more (inverter offline).

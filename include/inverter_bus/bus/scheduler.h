@@ -180,6 +180,8 @@ private:
   // stops
   std::vector<bool> stop_pending_;
   std::vector<std::uint64_t> last_stop_exchange_;
+  /// Its last refresh was not answered.
+  std::vector<bool> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
 
   // commands and refreshes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#ifndef INVERTER_BUS_ROS_VELOCITY_GROUP_H
-#define INVERTER_BUS_ROS_VELOCITY_GROUP_H
+#ifndef INVERTER_BUS_BUS_VELOCITY_GROUP_H
+#define INVERTER_BUS_BUS_VELOCITY_GROUP_H
 
 #include <cstddef>
 #include <map>
@@ -9,11 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include <inverter_bus/VelocityCommand.h>
-
 namespace inverter_bus
 {
-namespace ros_node
+namespace bus
 {
 /// A group command with its names resolved.
 struct VelocityGroup
@@ -26,8 +24,10 @@ struct VelocityGroup
   std::vector<std::size_t> named;
 };
 
-VelocityGroup resolve(const VelocityCommand& message, const std::map<std::string, std::size_t>& index_by_name);
-}  // namespace ros_node
+/// \p names and \p velocities as a message brought them, of any content and length.
+VelocityGroup resolveGroup(const std::vector<std::string>& names, const std::vector<double>& velocities,
+                           const std::map<std::string, std::size_t>& index_by_name);
+}  // namespace bus
 }  // namespace inverter_bus
 
-#endif  // INVERTER_BUS_ROS_VELOCITY_GROUP_H
+#endif  // INVERTER_BUS_BUS_VELOCITY_GROUP_H

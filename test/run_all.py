@@ -51,8 +51,11 @@ def run(program, logs):
     log = os.path.join(logs, '%s_%s.log' % (program.kind, program.name))
     start = time.monotonic()
     with open(log, 'w') as stream:
-        process = subprocess.Popen(program.command, cwd=program.directory, env=environment, stdin=subprocess.DEVNULL, stdout=stream,
-                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            process = start_program(program, environment, stream)
+        except OSError as error:
+            outcome.failed.append('%s (%s)' % (program.name, error))
+            return outcome
         try:
             status = process.wait(program.time_limit)
         except subprocess.TimeoutExpired:
@@ -66,6 +69,11 @@ def run(program, logs):
         outcome.output = stream.read()
     count(program, status, outcome)
     return outcome
+
+
+def start_program(program, environment, stream):
+    return subprocess.Popen(program.command, cwd=program.directory, env=environment, stdin=subprocess.DEVNULL,
+                            stdout=stream, stderr=subprocess.STDOUT, start_new_session=True)
 
 
 def end_group(process):
@@ -150,7 +158,7 @@ def ros_programs(build):
 
 def lint_programs(build):
     sources = [path for pattern in ('include/**/*.h', 'src/**/*.h', 'src/**/*.cpp', 'test/**/*.h', 'test/**/*.cpp',
-                                    'benchmark/**/*.cpp')
+                                    'benchmark/**/*.cpp', 'fuzz/**/*.h', 'fuzz/**/*.cpp')
                for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True))]
     # Other versions format a little differently.
     if shutil.which('clang-format-14'):
@@ -162,7 +170,7 @@ def lint_programs(build):
         yield Program('lint', 'catkin_lint', ['catkin_lint', '--offline', '--strict', '-W1'] +
                       [word for name in ignored for word in ('--ignore', name)] + [ROOT])
     if shutil.which('shellcheck'):
-        scripts = ['scripts/test', 'scripts/demo', 'scripts/install_dependencies', 'scripts/common.sh', '.ci/run']
+        scripts = ['scripts/test', 'scripts/demo', 'scripts/install_dependencies', 'scripts/common.sh', 'scripts/fuzz', '.ci/run']
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
 

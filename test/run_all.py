@@ -216,6 +216,8 @@ def main():
         groups = {arguments.only: groups[arguments.only]}
     elif arguments.sanitize:
         groups = {'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs}
+        if arguments.sanitize == 'thread':
+            del groups['fuzz']  # the targets have one thread
         os.environ['ASAN_OPTIONS'] = 'detect_leaks=0'
         os.environ['UBSAN_OPTIONS'] = 'halt_on_error=1:print_stacktrace=1'
         os.environ['TSAN_OPTIONS'] = 'suppressions=' + os.path.join(ROOT, 'test', 'thread_sanitizer.supp')

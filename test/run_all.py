@@ -22,13 +22,14 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 class Program:
     """One test program: how to run it and how to count its cases."""
 
-    def __init__(self, kind, name, command, time_limit=300.0, results=None, environment=None):
+    def __init__(self, kind, name, command, time_limit=300.0, results=None, environment=None, directory=ROOT):
         self.kind = kind
         self.name = name
         self.command = command
         self.time_limit = time_limit
         self.results = results  # directory of JUnit files; None: a Python unittest or a single check
         self.environment = environment or {}
+        self.directory = directory
 
 
 class Outcome:
@@ -50,8 +51,11 @@ def run(program, logs):
     log = os.path.join(logs, '%s_%s.log' % (program.kind, program.name))
     start = time.monotonic()
     with open(log, 'w') as stream:
-        process = subprocess.Popen(program.command, cwd=ROOT, env=environment, stdin=subprocess.DEVNULL, stdout=stream,
-                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            process = start_program(program, environment, stream)
+        except OSError as error:
+            outcome.failed.append('%s (%s)' % (program.name, error))
+            return outcome
         try:
             status = process.wait(program.time_limit)
         except subprocess.TimeoutExpired:
@@ -65,6 +69,11 @@ def run(program, logs):
         outcome.output = stream.read()
     count(program, status, outcome)
     return outcome
+
+
+def start_program(program, environment, stream):
+    return subprocess.Popen(program.command, cwd=program.directory, env=environment, stdin=subprocess.DEVNULL,
+                            stdout=stream, stderr=subprocess.STDOUT, start_new_session=True)
 
 
 def end_group(process):
@@ -149,19 +158,21 @@ def ros_programs(build):
 
 def lint_programs(build):
     sources = [path for pattern in ('include/**/*.h', 'src/**/*.h', 'src/**/*.cpp', 'test/**/*.h', 'test/**/*.cpp',
-                                    'benchmark/**/*.cpp')
+                                    'benchmark/**/*.cpp', 'fuzz/**/*.h', 'fuzz/**/*.cpp')
                for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True))]
     # Other versions format a little differently.
     if shutil.which('clang-format-14'):
         yield Program('lint', 'clang_format', ['clang-format-14', '--dry-run', '-Werror'] + sources)
     if shutil.which('catkin_lint'):
         # It doesn't see targets that a function defines; scripts/ and test/ belong to developers; the two about
-        # directories mean catkin's own include directory, which is marked SYSTEM.
-        ignored = ['undefined_target', 'uninstalled_script', 'external_directory', 'external_interface_path']
+        # directories mean catkin's own include directory, which is marked SYSTEM; fuzz/bytes can be built by itself too.
+        ignored = ['undefined_target', 'uninstalled_script', 'external_directory', 'external_interface_path',
+                   'subproject']
         yield Program('lint', 'catkin_lint', ['catkin_lint', '--offline', '--strict', '-W1'] +
                       [word for name in ignored for word in ('--ignore', name)] + [ROOT])
     if shutil.which('shellcheck'):
-        scripts = ['scripts/test', 'scripts/demo', 'scripts/install_dependencies', 'scripts/common.sh', '.ci/run']
+        scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/install_dependencies', 'scripts/common.sh',
+                   '.ci/run']
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
 
@@ -170,6 +181,16 @@ def python_program(kind, path, build, time_limit=120.0):
     name = os.path.splitext(os.path.basename(path))[0]
     return Program(kind, name, [sys.executable, os.path.join(ROOT, path), '-v'], time_limit,
                    environment={'INVERTER_BUS_BUILD': build})
+
+
+def fuzz_programs(build):
+    """A short run of every fuzz target (fuzz/bytes): its corpus, and always the same changes of it."""
+    for corpus in sorted(glob.glob(os.path.join(ROOT, 'fuzz', 'bytes', 'corpus', '*'))):
+        name = os.path.basename(corpus)
+        program = os.path.join(build, 'fuzz', 'fuzz_' + name)
+        longest = 2000 if os.path.exists(os.path.join(ROOT, 'fuzz', 'bytes', name + '.dict')) else 256
+        yield Program('fuzz', name, [program, '-runs=20000', '-max_total_time=4', '-max_len=%d' % longest, corpus],
+                      directory=os.path.join(build, 'fuzz'))
 
 
 def other_programs(build):
@@ -183,17 +204,20 @@ def other_programs(build):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--build', required=True)
-    parser.add_argument('--only', choices=['unit', 'ros', 'lint'])
+    parser.add_argument('--only', choices=['unit', 'fuzz', 'ros', 'lint'])
     parser.add_argument('--match', default='')
     parser.add_argument('--sanitize', choices=['address', 'thread'])
     arguments = parser.parse_args()
     build = os.path.abspath(arguments.build)
 
-    groups = {'lint': lint_programs, 'unit': unit_programs, 'ros': ros_programs, 'other': other_programs}
+    groups = {'lint': lint_programs, 'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs,
+              'other': other_programs}
     if arguments.only:
         groups = {arguments.only: groups[arguments.only]}
     elif arguments.sanitize:
-        groups = {'unit': unit_programs, 'ros': ros_programs}
+        groups = {'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs}
+        if arguments.sanitize == 'thread':
+            del groups['fuzz']  # the targets have one thread
         os.environ['ASAN_OPTIONS'] = 'detect_leaks=0'
         os.environ['UBSAN_OPTIONS'] = 'halt_on_error=1:print_stacktrace=1'
         os.environ['TSAN_OPTIONS'] = 'suppressions=' + os.path.join(ROOT, 'test', 'thread_sanitizer.supp')
@@ -205,7 +229,7 @@ def main():
         chosen = [program for program in programs(build) if arguments.match in program.name]
         # Whole nodes on a simulated line keep real time and mostly wait: two at a time. Peers share names and ports.
         cores = os.cpu_count() or 1
-        workers = {'unit': cores, 'lint': cores, 'ros': min(2, cores)}.get(group, 1)
+        workers = {'unit': cores, 'lint': cores, 'fuzz': cores, 'ros': min(2, cores)}.get(group, 1)
         with concurrent.futures.ThreadPoolExecutor(workers) as pool:
             for program, outcome in zip(chosen, pool.map(lambda program: run(program, logs), chosen)):
                 report(program, outcome)

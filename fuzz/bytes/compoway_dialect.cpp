@@ -237,10 +237,8 @@ public:
   {
     std::string text(bytes.begin(), bytes.end());
     text += static_cast<char>(ETX);
-    Bytes frame{ STX };
-    frame.insert(frame.end(), text.begin(), text.end());
-    frame.push_back(bccOf(text));
-    return frame;
+    const std::string frame = static_cast<char>(STX) + text + static_cast<char>(bccOf(text));
+    return Bytes(frame.begin(), frame.end());
   }
 
 private:

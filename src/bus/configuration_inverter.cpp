@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "configuration_yaml.h"
+#include "inverter_bus/wire/shown.h"
 
 namespace inverter_bus
 {
@@ -101,7 +102,7 @@ drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config,
   }
   catch (const drive::ConfigurationError& error)
   {
-    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + config.drive + "': ";
+    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + wire::shown(config.drive) + "': ";
     throw drive::ConfigurationError(drive::oneLine(place + error.what()));
   }
 }

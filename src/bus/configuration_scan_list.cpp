@@ -6,6 +6,8 @@
 #include <limits>
 #include <regex>
 
+#include "inverter_bus/wire/shown.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -100,7 +102,7 @@ std::string entryPlace(const std::string& place, std::size_t index, const Value&
   const auto name = entry.map.find("name");
   if (name != entry.map.end() && name->second.type == Value::Type::Text)
   {
-    text += " (" + name->second.text + ")";
+    text += " (" + wire::shown(name->second.text) + ")";
   }
   return text;
 }

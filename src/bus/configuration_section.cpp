@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "inverter_bus/wire/shown.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -13,6 +15,7 @@ namespace bus
 namespace
 {
 constexpr std::size_t LONGEST_VALUE = 100;
+constexpr std::size_t LONGEST_MESSAGE = 2000;
 
 /// Shortest of the usual notations that reads like what the user wrote.
 std::string numberText(double number)
@@ -32,18 +35,6 @@ std::string rangeText(const Range& range)
     return "a number above " + minimum + " and up to " + maximum + unit;
   }
   return "a number from " + minimum + " to " + maximum + unit;
-}
-
-/// One line whatever the user's text holds.
-std::string printable(const std::string& text)
-{
-  std::string line;
-  for (const char character : text)
-  {
-    const bool control = static_cast<unsigned char>(character) < 0x20 || character == 0x7F;
-    line += control ? ' ' : character;
-  }
-  return line;
 }
 
 std::string describeList(const Value& value)
@@ -91,12 +82,7 @@ std::string describeWhole(const Value& value)
 
 std::string describe(const Value& value)
 {
-  std::string text = printable(describeWhole(value));
-  if (text.size() > LONGEST_VALUE)
-  {
-    text = text.substr(0, LONGEST_VALUE) + "...";
-  }
-  return text;
+  return wire::shown(describeWhole(value), LONGEST_VALUE);
 }
 
 std::string join(const std::vector<std::string>& names)
@@ -109,7 +95,7 @@ std::string join(const std::vector<std::string>& names)
   return text;
 }
 
-Section::Section(const Value& value, const std::string& place) : place_(printable(place))
+Section::Section(const Value& value, const std::string& place) : place_(wire::shown(place, LONGEST_MESSAGE))
 {
   if (value.type != Value::Type::Map)
   {
@@ -133,7 +119,7 @@ void Section::refuseUnknownKeys(const std::vector<std::string>& known) const
   {
     if (std::find(known.begin(), known.end(), entry.first) == known.end())
     {
-      throw drive::ConfigurationError(entry.second.place + ": unknown key '" + printable(entry.first) +
+      throw drive::ConfigurationError(entry.second.place + ": unknown key '" + wire::shown(entry.first) +
                                       "' = " + describe(entry.second.value) + "; allowed: " + join(known));
     }
   }
@@ -276,9 +262,9 @@ void Section::require(const std::string& key, const std::string& allowed) const
 void Section::fail(const std::string& key, const std::string& problem, const std::string& allowed) const
 {
   const Value* value = find(key);
-  const std::string shown = value == nullptr ? "(not set)" : describe(*value);
-  throw drive::ConfigurationError(
-      printable(placeOf(key) + ": key '" + key + "' = " + shown + ": " + problem + "; allowed: " + allowed));
+  const std::string given = value == nullptr ? "(not set)" : describe(*value);
+  throw drive::ConfigurationError(wire::shown(
+      placeOf(key) + ": key '" + key + "' = " + given + ": " + problem + "; allowed: " + allowed, LONGEST_MESSAGE));
 }
 }  // namespace bus
 }  // namespace inverter_bus

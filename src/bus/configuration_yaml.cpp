@@ -13,6 +13,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "inverter_bus/wire/shown.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -155,7 +157,7 @@ private:
       const std::string key = entry.first.Scalar();
       if (!value.map.emplace(key, read(entry.second, depth + 1)).second)
       {
-        fail(entry.first.Mark(), "key '" + key + "' stands twice; allowed: once");
+        fail(entry.first.Mark(), "key '" + wire::shown(key) + "' stands twice; allowed: once");
       }
     }
     return value;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "inverter_bus/bus/coordinator.h"
+#include "inverter_bus/wire/shown.h"
 
 // What users ask of the bus: velocities, stops and services.
 
@@ -14,6 +15,7 @@ namespace bus
 namespace
 {
 constexpr double GROUP_ERROR_SHOWN_S = 1.0;
+constexpr double GROUP_LOG_PERIOD_S = 5.0;
 
 /// Contract, section 2: which id counts if several apply.
 int rank(std::uint16_t error_id)
@@ -251,8 +253,24 @@ void Coordinator::refuse(TimePoint now, const std::vector<std::size_t>& indices,
   if (group)
   {
     noteGroupError(now, error_id);
-    log(Level::Warn, "grouped command refused: " + text);
+    logGroupRefusal(now, text);
   }
+}
+
+/// The text holds what somebody has sent: a stream of groups, each wrong in another way, would fill the log.
+void Coordinator::logGroupRefusal(TimePoint now, const std::string& text)
+{
+  if (group_logged_at_ && now - *group_logged_at_ < seconds(GROUP_LOG_PERIOD_S))
+  {
+    ++groups_not_logged_;
+    return;
+  }
+  const std::string more = groups_not_logged_ == 0
+                               ? ""
+                               : " (and " + std::to_string(groups_not_logged_) + " other groups since the last one)";
+  log(Level::Warn, "grouped command refused: " + text + more);
+  group_logged_at_ = now;
+  groups_not_logged_ = 0;
 }
 
 // --- stop ------------------------------------------------------------------------------------------------------------
@@ -312,7 +330,11 @@ void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uin
     broadcast_due_ = true;
     broadcast_requested_ = now;
   }
-  stop_calls_.push_back(std::move(call));
+  if (call.callback)
+  {
+    // Nobody waits for the others: a flood of them must not be kept.
+    stop_calls_.push_back(std::move(call));
+  }
   finishStopCalls(now);
 }
 
@@ -635,11 +657,12 @@ void Coordinator::refuseParameter(const Inverter& inverter, const std::string& n
   if (!any)
   {
     refuseCall(callback, ERROR_NOT_ARMED,
-               "the profile " + profile.name + " knows no parameter's place: give '" + name + "' under overrides");
+               "the profile " + profile.name + " knows no parameter's place: give '" + wire::shown(name) +
+                   "' under overrides");
     return;
   }
   refuseCall(callback, ERROR_OUT_OF_RANGE,
-             "'" + name + "' is no parameter of " + profile.name +
+             "'" + wire::shown(name) + "' is no parameter of " + profile.name +
                  "; use the drive's own code, or 0x and the number printed in its manual");
 }
 
@@ -652,7 +675,7 @@ std::uint16_t Coordinator::judgeWrite(const Inverter& inverter, const std::strin
   const auto parameter = inverter.drive.findParameter(name, true);
   if (known == profile.parameters.end())
   {
-    why = "'" + name + "' is no parameter of " + profile.name + " that can be written";
+    why = "'" + wire::shown(name) + "' is no parameter of " + profile.name + " that can be written";
     return ERROR_OUT_OF_RANGE;
   }
   if (parameter)

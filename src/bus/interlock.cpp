@@ -84,7 +84,8 @@ bool Interlock::open() const
 bool Interlock::silent(TimePoint now, const Stream* stream) const
 {
   Duration needed = std::max(command_timeout_, seconds(SHORTEST_SILENCE_S));
-  TimePoint since = *neutral_since_;
+  // Whoever is not known may be one of the forgotten, whose stream goes on.
+  TimePoint since = stream == nullptr ? std::max(*neutral_since_, forgotten_last_) : *neutral_since_;
   if (stream != nullptr)
   {
     // The longest of the last few: a publisher that sends in pairs does not become a fast one by that.
@@ -136,9 +137,11 @@ Interlock::Stream& Interlock::book(TimePoint now, const Publisher& publisher)
   {
     if (streams_.size() >= MOST_PUBLISHERS)
     {
-      streams_.erase(std::min_element(streams_.begin(), streams_.end(), [](const auto& left, const auto& right) {
+      const auto oldest = std::min_element(streams_.begin(), streams_.end(), [](const auto& left, const auto& right) {
         return left.second.last < right.second.last;
-      }));
+      });
+      forgotten_last_ = std::max(forgotten_last_, oldest->second.last);
+      streams_.erase(oldest);
     }
     found = streams_.emplace(publisher.name, Stream()).first;
   }

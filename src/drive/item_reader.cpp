@@ -8,6 +8,7 @@
 #include <regex>
 #include <string>
 
+#include "inverter_bus/wire/shown.h"
 #include "numbers.h"
 
 namespace inverter_bus
@@ -153,7 +154,8 @@ void readValues(const YamlCursor& cursor, Item& item)
     const std::int64_t highest = largestRaw(item);
     if (!raw || *raw < 0 || *raw > highest)
     {
-      meaning.complain("the raw value '" + key + "': allowed: an integer from 0 to " + std::to_string(highest));
+      meaning.complain("the raw value '" + wire::shown(key) + "': allowed: an integer from 0 to " +
+                       std::to_string(highest));
     }
     else if (value)
     {

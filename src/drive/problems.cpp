@@ -2,27 +2,35 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "problems.h"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "inverter_bus/drive/profile.h"
+#include "inverter_bus/wire/shown.h"
 
 namespace inverter_bus
 {
 namespace drive
 {
+namespace
+{
+/// Whoever has more mistakes than these mends the first ones first.
+constexpr std::size_t MOST_LINES = 50;
+}  // namespace
+
 std::string oneLine(const std::string& text)
 {
   constexpr std::size_t LONGEST = 1000;
-  std::string line = text.substr(0, LONGEST) + (text.size() > LONGEST ? " ..." : "");
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
-  return line;
+  return wire::shown(text, LONGEST);
 }
 
 void Problems::add(const std::string& where, const std::string& key, const std::string& what)
 {
-  lines_.push_back(oneLine(where + ": " + (key.empty() ? "" : "key '" + key + "': ") + what));
+  if (lines_.size() >= MOST_LINES)
+  {
+    ++more_;
+    return;
+  }
+  lines_.push_back(oneLine(where + ": " + (key.empty() ? "" : "key '" + wire::shown(key) + "': ") + what));
 }
 
 bool Problems::empty() const
@@ -30,9 +38,14 @@ bool Problems::empty() const
   return lines_.empty();
 }
 
-const std::vector<std::string>& Problems::lines() const
+std::vector<std::string> Problems::lines() const
 {
-  return lines_;
+  std::vector<std::string> lines = lines_;
+  if (more_ > 0)
+  {
+    lines.push_back("... and " + std::to_string(more_) + " more mistakes");
+  }
+  return lines;
 }
 }  // namespace drive
 }  // namespace inverter_bus

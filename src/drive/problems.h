@@ -3,6 +3,7 @@
 #ifndef INVERTER_BUS_SRC_DRIVE_PROBLEMS_H
 #define INVERTER_BUS_SRC_DRIVE_PROBLEMS_H
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,12 @@ public:
   /// \p where "file:line" or the scan list entry, \p key the way to the value ("points.run.coil"), may be empty.
   void add(const std::string& where, const std::string& key, const std::string& what);
   bool empty() const;
-  const std::vector<std::string>& lines() const;
+  /// The first mistakes, and at the end how many more there were.
+  std::vector<std::string> lines() const;
 
 private:
   std::vector<std::string> lines_;
+  std::size_t more_ = 0;
 };
 }  // namespace drive
 }  // namespace inverter_bus

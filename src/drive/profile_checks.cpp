@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "inverter_bus/wire/shown.h"
 #include "numbers.h"
 #include "profile_builder.h"
 #include "status_fields.h"
@@ -65,7 +66,8 @@ void checkParameterName(const YamlValue& root, const std::string& key, const std
 {
   if (!name.empty() && profile.parameters.count(name) == 0)
   {
-    locate(root, key, problems).complain("value '" + name + "': allowed: a name of the section parameters");
+    locate(root, key, problems)
+        .complain("value '" + wire::shown(name) + "': allowed: a name of the section parameters");
   }
 }
 
@@ -82,7 +84,8 @@ void checkUnit(const YamlValue& root, const std::string& key, const std::string&
   if (std::find(units.begin(), units.end(), unit) == units.end())
   {
     const YamlCursor place = locate(root, key, problems);
-    place.complain("value '" + name + "': a parameter with the unit '" + unit + "': allowed: " + join(units));
+    place.complain("value '" + wire::shown(name) + "': a parameter with the unit '" + unit +
+                   "': allowed: " + join(units));
   }
 }
 

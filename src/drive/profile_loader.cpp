@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "inverter_bus/drive/profile.h"
+#include "inverter_bus/wire/shown.h"
 #include "problems.h"
 #include "profile_builder.h"
 #include "profile_overrides.h"
@@ -33,7 +34,7 @@ std::string profilePath(const std::string& name_or_path, const std::string& dire
     return (std::filesystem::path(directory) / (name_or_path + EXTENSION)).string();
   }
   problems.add(place.empty() ? directory : place, "drive",
-               "value '" + name_or_path + "': allowed: an absolute path, or one of: " +
+               "value '" + wire::shown(name_or_path) + "': allowed: an absolute path, or one of: " +
                    (known.empty() ? "(no profiles in " + directory + ")" : join(known)));
   return "";
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "inverter_bus/wire/shown.h"
 #include "item_reader.h"
 #include "yaml_reader.h"
 
@@ -205,7 +206,7 @@ void confirm(YamlValue& root, const std::vector<std::string>& names, const std::
     else
     {
       problems.add(place, "confirm",
-                   "value '" + name + "': " +
+                   "value '" + wire::shown(name) + "': " +
                        (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + join(known)));
     }
   }

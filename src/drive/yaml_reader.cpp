@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "inverter_bus/wire/shown.h"
 #include "numbers.h"
 
 namespace inverter_bus
@@ -38,7 +39,7 @@ void YamlCursor::reject(const std::string& allowed) const
   switch (value_->kind)
   {
     case YamlValue::Kind::Scalar:
-      complain("value '" + value_->text + "'" + (value_->quoted ? " (a text, in quotes)" : "") +
+      complain("value '" + wire::shown(value_->text) + "'" + (value_->quoted ? " (a text, in quotes)" : "") +
                ": allowed: " + allowed);
       break;
     case YamlValue::Kind::List:

@@ -8,7 +8,7 @@
 #include <ros/transport_hints.h>
 #include <boost/function.hpp>
 
-#include "inverter_bus/ros/velocity_group.h"
+#include "inverter_bus/bus/velocity_group.h"
 
 namespace inverter_bus
 {
@@ -116,7 +116,8 @@ void Commands::onCommand(std::size_t index, const ros::MessageEvent<std_msgs::Fl
 
 void Commands::onGroup(const ros::MessageEvent<VelocityCommand const>& event)
 {
-  VelocityGroup group = resolve(*event.getConstMessage(), index_by_name_);
+  const VelocityCommand& message = *event.getConstMessage();
+  bus::VelocityGroup group = bus::resolveGroup(message.name, message.velocity, index_by_name_);
   bus::VelocityCommand command;
   command.targets = std::move(group.targets);
   command.grouped = true;

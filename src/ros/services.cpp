@@ -146,7 +146,7 @@ void Services::answerStop(std::optional<std::size_t> index, const Stop::Request&
   }
   else
   {
-    bus_.stop(index, request.mode, [](const bus::Answer&) {});
+    bus_.stop(index, request.mode, bus::AnswerCallback());
     fill(timeoutAnswer("the stop is under way, but too many calls wait for its confirmation: see the status"),
          response);
   }

@@ -62,6 +62,19 @@ bool startsAndEndsWith(const std::string& name, const std::string& start, const 
          name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
+/// A file of ours: \p prefix, a date and a time, EXTENSION. What a user calls similarly stays.
+bool isTrace(const std::string& name, const std::string& prefix)
+{
+  constexpr std::size_t DATE_SIZE = 8;
+  if (!startsAndEndsWith(name, prefix, EXTENSION) || name.size() <= prefix.size() + DATE_SIZE)
+  {
+    return false;
+  }
+  const auto date = name.begin() + static_cast<std::ptrdiff_t>(prefix.size());
+  const auto is_digit = [](unsigned char character) { return std::isdigit(character) != 0; };
+  return std::all_of(date, date + DATE_SIZE, is_digit) && date[DATE_SIZE] == 'T';
+}
+
 /// Writes a file that must not exist yet. Returns 0 or an errno.
 int writeNewFile(const std::string& path, const std::string& text)
 {
@@ -199,7 +212,7 @@ void TraceFiles::removeOldFiles(const std::string& newest) const
   for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error))
   {
     const std::string path = entry->path().string();
-    if (path != newest && startsAndEndsWith(entry->path().filename().string(), prefix_, EXTENSION))
+    if (path != newest && isTrace(entry->path().filename().string(), prefix_))
     {
       files.push_back(path);
     }

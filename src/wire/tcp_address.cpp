@@ -7,6 +7,7 @@
 #include <boost/system/error_code.hpp>
 #include <cctype>
 
+#include "inverter_bus/wire/shown.h"
 #include "inverter_bus/wire/tcp_port.h"
 
 namespace inverter_bus
@@ -44,7 +45,7 @@ std::string checkHost(const std::string& host, bool in_brackets)
   if (in_brackets)
   {
     boost::asio::ip::make_address_v6(host, refused);
-    return refused ? "'" + host + "' is no IPv6 address" : "";
+    return refused ? "'" + shown(host) + "' is no IPv6 address" : "";
   }
   if (host.empty())
   {
@@ -52,7 +53,7 @@ std::string checkHost(const std::string& host, bool in_brackets)
   }
   if (!std::all_of(host.begin(), host.end(), mayStandInName) || host.size() > LONGEST_HOST_NAME)
   {
-    return "'" + host + "' is no host name";
+    return "'" + shown(host) + "' is no host name";
   }
   if (looksLikeIpv4(host))
   {
@@ -120,7 +121,7 @@ std::optional<TcpAddress> parseTcpAddress(const std::string& text, std::uint16_t
   const auto port = parts->rest[0] == ':' ? parsePort(parts->rest.substr(1)) : std::nullopt;
   if (!port)
   {
-    error = "behind the host comes a colon and a port number from 1 to 65535, not '" + parts->rest + "'";
+    error = "behind the host comes a colon and a port number from 1 to 65535, not '" + shown(parts->rest) + "'";
     return std::nullopt;
   }
   return TcpAddress{ parts->host, *port };

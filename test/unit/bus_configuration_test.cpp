@@ -431,6 +431,30 @@ TEST(ConfigurationTest, malformedYamlIsReportedWithFileAndLine)
   EXPECT_THAT(refusal("retries: 1\nretries: 2\n" + ONE), AllOf(HasSubstr(".yaml:2:"), HasSubstr("'retries'")));
 }
 
+TEST(ConfigurationTest, longTextsAreCutAndWhatIsAllowedStillThere)
+{
+  const std::string huge(300000, 'x');
+  for (const std::string& text :
+       { "scan_list: [{name: " + huge + ", node: 1, drive: omron_mx2}]\n",
+         "scan_list: [{name: a, node: " + huge + ", drive: omron_mx2}]\n",
+         "scan_list: [{name: " + huge + ", node: 1000, drive: omron_mx2}]\n",
+         "scan_list: [{name: a, node: 1, drive: " + huge + "}]\n", "port: 'tcp://" + huge + "'\n" + ONE,
+         "port: 'tcp://host:" + huge + "'\n" + ONE, "? " + huge + "\n: 1\n" + ONE,
+         "scan_list: [{name: a, node: 1, drive: omron_mx2, ? " + huge + " : 1}]\n",
+         "scan_list: [{name: a, node: 1, drive: omron_mx2, confirm: [" + huge + "]}]\n", "scan_list: " + huge + "\n" })
+  {
+    const std::string message = refusal(text);
+    EXPECT_LT(message.size(), 2100U) << message.substr(0, 200);
+    EXPECT_THAT(message, AllOf(HasSubstr("xxx"), HasSubstr(ALLOWED)));
+  }
+}
+
+TEST(ConfigurationTest, aMessageIsOneLineOfPrintableText)
+{
+  EXPECT_THAT(refusal("scan_list: [{name: \"a\\e[2J\\nb\", node: 1, drive: omron_mx2}]\n"),
+              AllOf(Not(HasSubstr("\x1B")), Not(HasSubstr("\n")), HasSubstr("a [2J b")));
+}
+
 TEST(ConfigurationTest, aMissingFileIsNamed)
 {
   EXPECT_THROW(readYamlFile("/nonexistent/scan_list.yaml"), drive::ConfigurationError);

@@ -585,6 +585,18 @@ TEST(Interlock, refusedStreamIsNotForgottenAmongManyPublishers)
     belt.command(time + 50, publisher("/anonymous_" + std::to_string(time)));
   }
 }
+
+TEST(Interlock, streamsThatGoOnStayRefusedHoweverManyTheyAre)
+{
+  Running belt;
+  belt.stopAndConfirm(1200);
+  for (int time = 1300; time < 5000; ++time)
+  {
+    EXPECT_EQ(belt.command(time, publisher("/one_of_many_" + std::to_string(time % 100))), Permission::Locked) << time;
+  }
+  EXPECT_EQ(belt.command(5100, publisher("/new")), Permission::Locked);
+  EXPECT_EQ(belt.command(5600, publisher("/newer")), Permission::Granted);
+}
 }  // namespace
 }  // namespace bus
 }  // namespace inverter_bus

@@ -546,6 +546,34 @@ TEST(DriveLoader, ShowsAllMistakesAtOnce)
   EXPECT_THAT(checkProfile(file.path()), SizeIs(3));
 }
 
+TEST(DriveLoader, ManyMistakesAreCountedAndNotAllShown)
+{
+  std::string text = smallProfile();
+  for (int i = 0; i < 1000; ++i)
+  {
+    text += "nonsense_" + std::to_string(i) + ": 1\n";
+  }
+  const ProfileFile file(text);
+  const auto problems = checkProfile(file.path());
+  ASSERT_THAT(problems, SizeIs(51));
+  EXPECT_EQ("... and 950 more mistakes", problems.back());
+}
+
+TEST(DriveLoader, ALongValueIsCutAndWhatIsAllowedStillThere)
+{
+  const std::string huge(300000, 'x');
+  const ProfileFile value(replaced(smallProfile(), "last: 31", "last: " + huge));
+  const auto problems = checkProfile(value.path());
+  ASSERT_FALSE(problems.empty());
+  EXPECT_LT(problems[0].size(), 1000U);
+  EXPECT_THAT(problems[0], AllOf(HasSubstr("xxx... (300000 bytes)'"), HasSubstr("allowed: an integer")));
+  const ProfileFile key(smallProfile() + "? " + huge + "\n: 1\n");
+  const auto unknown = checkProfile(key.path());
+  ASSERT_FALSE(unknown.empty());
+  EXPECT_LT(unknown[0].size(), 1100U);
+  EXPECT_THAT(unknown[0], AllOf(HasSubstr("xxx... (300000 bytes)'"), HasSubstr("unknown key")));
+}
+
 TEST(DriveLoader, MalformedYamlHasALine)
 {
   const ProfileFile file("drive: x\ntitle: [1, 2\nprotocol: y: z\n");

@@ -81,6 +81,40 @@ TEST_F(TraceFilesTest, aReasonCannotLeaveTheDirectory)
   EXPECT_THAT(path.filename().string(), Not(HasSubstr("..")));
 }
 
+TEST_F(TraceFilesTest, aNameOfTheNodeCannotLeaveTheDirectory)
+{
+  for (const char* name : { "/../../etc/x", "/a/../..", "/\xC3\xA4", "/..", "/" })
+  {
+    TraceFiles traces(directory_.string(), name, warn_);
+    std::string error;
+    const fs::path path = traces.write(dump("x"), error);
+    EXPECT_EQ(directory_, path.parent_path()) << name;
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path))) << name;
+  }
+}
+
+TEST_F(TraceFilesTest, nobodyElseMayWriteAFile)
+{
+  TraceFiles traces(directory_.string(), "/bus", warn_);
+  std::string error;
+  const fs::perms perms = fs::status(traces.write(dump("x"), error)).permissions();
+  const fs::perms forbidden = fs::perms::group_write | fs::perms::others_write | fs::perms::owner_exec;
+  EXPECT_EQ(fs::perms::none, perms & forbidden);
+}
+
+TEST_F(TraceFilesTest, aFileWithANodesNameThatIsNoTraceOfItIsKept)
+{
+  TraceFiles traces(directory_.string(), "/bus", warn_);
+  fs::create_directories(directory_);
+  std::ofstream(directory_ / "bus-1st-notes.txt") << "the user's own";
+  std::string error;
+  for (int i = 0; i < 52; ++i)
+  {
+    traces.write(dump("x"), error);
+  }
+  EXPECT_TRUE(fs::exists(directory_ / "bus-1st-notes.txt"));
+}
+
 TEST_F(TraceFilesTest, theNewestFiftyOfANodeAreKept)
 {
   TraceFiles traces(directory_.string(), "/bus", warn_);

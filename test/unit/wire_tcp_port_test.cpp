@@ -15,8 +15,10 @@
 #include <cstring>
 #include <future>
 #include <ostream>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "inverter_bus/wire/line.h"
 #include "inverter_bus/wire/tcp_port.h"
@@ -118,6 +120,11 @@ public:
   std::uint16_t port() const
   {
     return port_;
+  }
+
+  int listener() const
+  {
+    return listener_.get();
   }
 
   Descriptor accept() const
@@ -405,6 +412,55 @@ TEST_F(TcpPortTest, triesAllAddressesOfAName)
     return std::vector<std::string>{ "127.0.0.2", "::1", "127.0.0.1" };
   });
   EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+}
+
+/// Sockets of this process that take connections.
+int listeningSockets()
+{
+  int count = 0;
+  for (int descriptor = 0; descriptor < 1024; ++descriptor)
+  {
+    int listening = 0;
+    socklen_t size = sizeof(listening);
+    const bool socket = ::getsockopt(descriptor, SOL_SOCKET, SO_ACCEPTCONN, &listening, &size) == 0;
+    count += socket && listening != 0 ? 1 : 0;
+  }
+  return count;
+}
+
+TEST_F(TcpPortTest, listensNowhere)
+{
+  const Server server;
+  const int before = listeningSockets();
+  const auto port = makePort("127.0.0.1", server.port());
+  ASSERT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(before, listeningSockets());
+  EXPECT_GE(before, 1) << "the server of the test itself is to be counted";
+}
+
+TEST_F(TcpPortTest, asksForTheConfiguredHostAndCallsItsPortOnly)
+{
+  Server configured;
+  const Server other;
+  std::vector<std::string> asked;
+  const auto port = makePort("gateway", configured.port(), [&asked](const std::string& host, std::string&) {
+    asked.push_back(host);
+    return std::vector<std::string>{ "127.0.0.1" };
+  });
+  ASSERT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  {
+    // Whatever the gateway says, a redirection among it, is bytes of the line.
+    const Descriptor peer = configured.accept();
+    const std::string elsewhere = "HTTP/1.1 302 Found\r\nLocation: tcp://127.0.0.1:" + std::to_string(other.port());
+    writeTo(peer, Bytes(elsewhere.begin(), elsewhere.end()));
+    Bytes received;
+    EXPECT_EQ(ReceiveResult::Data, port->receive(received, soon()));
+  }
+  configured.close();
+  EXPECT_EQ(OpenResult::NotThere, port->open(error_));
+  EXPECT_EQ((std::vector<std::string>{ "gateway", "gateway" }), asked);
+  pollfd called{ other.listener(), POLLIN, 0 };
+  EXPECT_EQ(0, ::poll(&called, 1, 0)) << "a server that is not configured was called";
 }
 
 TEST_F(TcpPortTest, saysThatTheConnectionWasRefused)

@@ -153,6 +153,7 @@ private:
 
   void noteGroupError(TimePoint now, std::uint16_t error_id);
   void clearGroupError(TimePoint now, bool by_group);
+  void logGroupRefusal(TimePoint now, const std::string& text);
 
   // stops
   void requestStop(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
@@ -248,6 +249,8 @@ private:
   std::uint16_t last_error_ = 0;
   std::uint16_t group_error_ = 0;
   TimePoint group_error_at_;
+  std::optional<TimePoint> group_logged_at_;
+  std::size_t groups_not_logged_ = 0;
   std::uint8_t last_node_ = 0;
   wire::LineCounters counters_;
   bool echo_found_ = false;

@@ -97,6 +97,8 @@ private:
 
   Duration command_timeout_;
   std::map<std::string, Stream> streams_;
+  /// The last command of any publisher that is not in streams_ any more.
+  TimePoint forgotten_last_;
   unsigned generation_ = 1;
   bool released_ = false;
   bool stop_pending_ = false;

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// Nothing from the wire or from a message can fill the log: whole buses in virtual time, and the node's throttle behind.
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "inverter_bus/ros/log_throttle.h"
+#include "virtual_bus.h"
+
+namespace inverter_bus
+{
+namespace
+{
+const char* const ONE_BELT = R"(
+port: /dev/virtual
+baud_rate: 115200
+response_timeout: 0.02
+retries: 0
+offline_after: 1
+scan_list:
+  - {name: belt, node: 1, drive: omron_mx2}
+)";
+
+/// Whatever happens, one text comes once in this time.
+constexpr double PERIOD_S = 5.0;
+
+/// A bus whose log lines go through the throttle at the moment they are made.
+class Flood : public testing::Test
+{
+protected:
+  /// Runs on until \p condition.
+  void runUntil(const std::function<bool()>& condition)
+  {
+    ASSERT_TRUE(bus_.runUntil(60.0, [&] {
+      logWhatIsNew();
+      return condition();
+    }));
+  }
+
+  void logWhatIsNew()
+  {
+    const std::vector<std::string> texts = bus_.logTexts();
+    for (; made_ < texts.size(); ++made_)
+    {
+      logged_ += throttle_.admit(texts[made_], bus_.now()) ? 1 : 0;
+    }
+  }
+
+  /// Lines that \p texts different ones may have left in the log since the start.
+  std::size_t bound(std::size_t texts) const
+  {
+    return texts * (1 + static_cast<std::size_t>(toSeconds(bus_.now() - start_) / PERIOD_S));
+  }
+
+  VirtualBus bus_{ ONE_BELT };
+  const TimePoint start_ = bus_.now();
+  ros_node::LogThrottle throttle_;
+  std::size_t made_ = 0;
+  std::size_t logged_ = 0;
+};
+
+TEST_F(Flood, anInverterThatComesAndGoesAThousandTimes)
+{
+  bus_.settleIn();
+  for (int i = 0; i < 1000; ++i)
+  {
+    bus_.world("belt offline");
+    runUntil([this] { return bus_.status(0).communication_error; });
+    bus_.world("belt online");
+    runUntil([this] { return !bus_.status(0).communication_error; });
+  }
+  EXPECT_GE(made_, 2000U);
+  // The port is open; offline, online, and once more online by a late reply.
+  EXPECT_LE(logged_, bound(4));
+  EXPECT_GE(logged_, 3U);
+}
+
+TEST_F(Flood, aDriveThatTripsAHundredTimes)
+{
+  bus_.settleIn();
+  for (int i = 0; i < 100; ++i)
+  {
+    bus_.world("belt trip 5");
+    runUntil([this] { return bus_.status(0).monitor.faulted.value_or(false); });
+    ASSERT_TRUE(bus_.wait(bus_.reset(0)).success);
+  }
+  EXPECT_GE(made_, 100U);
+  EXPECT_LE(logged_, bound(4));
+  EXPECT_GE(logged_, 2U);
+}
+
+TEST_F(Flood, aPortThatIsPulledOutTwoHundredTimes)
+{
+  bus_.settleIn();
+  for (int i = 0; i < 200; ++i)
+  {
+    bus_.world("bus unplug");
+    runUntil([this] { return bus_.status(0).communication_error; });
+    bus_.world("bus plug");
+    runUntil([this] { return !bus_.status(0).communication_error; });
+  }
+  EXPECT_GE(made_, 600U);
+  EXPECT_LE(logged_, bound(4));
+  EXPECT_GE(logged_, 3U);
+}
+
+TEST_F(Flood, tenThousandWrongGroupsEachWrongInItsOwnWay)
+{
+  bus_.settleIn();
+  logWhatIsNew();
+  const std::size_t before = made_;
+  for (int i = 0; i < 10000; ++i)
+  {
+    bus_.at(i * 0.001, [this, i] {
+      bus_.coordinator().refuse(bus_.now(), { 0 }, bus::ERROR_OUT_OF_RANGE, "names '" + std::to_string(i) + "'", true);
+    });
+  }
+  bus_.run(9.9995);
+  logWhatIsNew();
+  const std::vector<std::string> texts = bus_.logTexts();
+  ASSERT_EQ(before + 2, texts.size());
+  EXPECT_EQ("grouped command refused: names '0'", texts[before]);
+  EXPECT_EQ("grouped command refused: names '5000' (and 4999 other groups since the last one)", texts[before + 1]);
+}
+
+TEST_F(Flood, refusedVelocitiesAndCallsLogNothing)
+{
+  bus_.settleIn();
+  logWhatIsNew();
+  const std::size_t before = made_;
+  for (int i = 0; i < 10000; ++i)
+  {
+    EXPECT_EQ(bus::ERROR_OUT_OF_RANGE, bus_.command(0, 1e9 + i, "/user" + std::to_string(i)));
+    bus_.group({ { 0, 1e9 + i } });
+    bus_.writeParameter(0, "nonsense_" + std::to_string(i), 1.0, false);
+    bus_.readParameter(0, "nonsense_" + std::to_string(i));
+  }
+  bus_.run(1.0);
+  EXPECT_EQ(before, bus_.logTexts().size());
+}
+}  // namespace
+}  // namespace inverter_bus

@@ -6,6 +6,7 @@ program that crashes, hangs or leaves no result counts as a failure.
 """
 import argparse
 import concurrent.futures
+import functools
 import glob
 import os
 import re
@@ -175,6 +176,7 @@ def lint_programs(build):
                    '.ci/run']
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
+    yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])
 
 
 def python_program(kind, path, build, time_limit=120.0):
@@ -183,8 +185,18 @@ def python_program(kind, path, build, time_limit=120.0):
                    environment={'INVERTER_BUS_BUILD': build})
 
 
-def fuzz_programs(build):
-    """A short run of every fuzz target (fuzz/bytes): its corpus, and always the same changes of it."""
+def bus_fuzz_programs(build, seeds, processes=2):
+    """The whole bus in virtual time (fuzz/bus_fuzz*): always the same seeds."""
+    program = os.path.join(build, 'devel', 'lib', 'inverter_bus', 'bus_fuzz')
+    each = seeds // processes
+    for first in range(1, seeds + 1, each):
+        yield Program('fuzz', 'bus_%d_to_%d' % (first, first + each - 1),
+                      [program, '--seed', str(first), '--seeds', str(each)], time_limit=600.0)
+
+
+def fuzz_programs(build, seeds=1000):
+    """bus_fuzz, and a short run of every fuzz target (fuzz/bytes): its corpus, and always the same changes of it."""
+    yield from bus_fuzz_programs(build, seeds)
     for corpus in sorted(glob.glob(os.path.join(ROOT, 'fuzz', 'bytes', 'corpus', '*'))):
         name = os.path.basename(corpus)
         program = os.path.join(build, 'fuzz', 'fuzz_' + name)
@@ -215,7 +227,8 @@ def main():
     if arguments.only:
         groups = {arguments.only: groups[arguments.only]}
     elif arguments.sanitize:
-        groups = {'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs}
+        few_seeds = functools.partial(fuzz_programs, seeds=100)
+        groups = {'unit': unit_programs, 'fuzz': few_seeds, 'ros': ros_programs}
         if arguments.sanitize == 'thread':
             del groups['fuzz']  # the targets have one thread
         os.environ['ASAN_OPTIONS'] = 'detect_leaks=0'

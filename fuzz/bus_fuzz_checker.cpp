@@ -365,7 +365,7 @@ void Checker::noteHeard(TimePoint end, std::size_t index)
   const TimePoint from = *before - seconds(0.5);
   const auto lost = std::count_if(unanswered_.begin(), unanswered_.end(), [&](TimePoint time) { return time >= from; });
   const bool calm = disturbed_at_ < from && connected_since_ < from && lane.online_since < from && lost <= 1;
-  if (calm && lane.status.run_command && !(budget_warns_ && budget_warns_(index)))
+  if (calm && !shutting_down_ && lane.status.run_command && !(budget_warns_ && budget_warns_(index)))
   {
     fail(end, "a running drive is served within its own communication time-out",
          nameOf(index) + " heard nothing for " + text(toSeconds(end - *before)) + " s, its time-out is " +

@@ -80,6 +80,9 @@ public:
   std::function<void(const bus::Answer&)> asked(TimePoint now, const std::string& what, double bound,
                                                 std::function<void(const bus::Answer&)> judge);
   void published(TimePoint now, const bus::InverterStatus& status);
+  void shutdownBegun(TimePoint now);
+  /// \p unconfirmed what the node names, each beginning with the inverter.
+  void shutdownEnded(TimePoint now, TimePoint begun, const std::vector<std::string>& unconfirmed) const;
 
   // --- what the world did ---------------------------------------------------------------------------------------------
   /// Something is about to happen to a drive, or has happened.
@@ -245,6 +248,7 @@ private:
   std::function<bool(std::size_t)> budget_warns_;
   std::function<TimePoint()> now_;
 
+  bool shutting_down_ = false;
   bool connected_ = false;
   TimePoint connected_since_;
   // the exchange in flight, or the last one

@@ -21,6 +21,8 @@ constexpr double TOLERANCE_S = 1e-3;
 constexpr double QUIET_S = 0.006;
 constexpr double TURNAROUND_S = 0.03;  // after a broadcast, with a margin
 constexpr double ZERO_BOUND_EXCHANGES = 8.0;
+constexpr double SHORTEST_SHUTDOWN_S = 2.0;  // contract, rule 4.4
+constexpr double LONGEST_SHUTDOWN_S = 10.0;
 
 std::string text(double value)
 {
@@ -140,6 +142,51 @@ void Checker::stopConfirmed(std::size_t index, TimePoint asked_at) const
   if (tells && lane.run_read < asked_at)
   {
     fail(now, "a confirmed stop", nameOf(index) + " was not asked whether RUN is off");
+  }
+}
+
+/// Rule 4.4. The order of these stops is the shutdown's own.
+void Checker::shutdownBegun(TimePoint now)
+{
+  shutting_down_ = true;
+  for (Lane& lane : lanes_)
+  {
+    lockUp(now, lane, true);
+    lane.due.reset();
+    lane.zero_due.reset();
+    // One frame to each that is offline.
+    probe_allowance_ += toSeconds(scene_.longestExchange());
+  }
+}
+
+void Checker::shutdownEnded(TimePoint now, TimePoint begun, const std::vector<std::string>& unconfirmed) const
+{
+  const double exchange = toSeconds(scene_.longestExchange());
+  const double two_each = 2.0 * exchange * static_cast<double>(lanes_.size());
+  const double bound = std::min(LONGEST_SHUTDOWN_S, std::max(SHORTEST_SHUTDOWN_S, two_each)) + exchange;
+  if (now - begun > seconds(bound) + babble(now))
+  {
+    fail(now, "shutdown", "takes " + text(toSeconds(now - begun)) + " s");
+  }
+  if (!calls_.empty())
+  {
+    fail(now, "every service is answered within its bound", calls_.begin()->second.what + " at the end");
+  }
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const std::string name = scene_.inverters[index].name + ":";
+    const bool named = std::any_of(unconfirmed.begin(), unconfirmed.end(), [&](const std::string& text) {
+      return text.compare(0, name.size(), name) == 0;
+    });
+    const bool commanded = lanes_[index].accepted_at != TimePoint();
+    if (commanded && !named && runLatched(index))
+    {
+      fail(now, "shutdown", nameOf(index) + " still has RUN on and is not named");
+    }
+    if (commanded && runLatched(index) && online(index) && lanes_[index].stop_sent < begun)
+    {
+      fail(now, "shutdown", nameOf(index) + " still has RUN on and was sent no stop");
+    }
   }
 }
 
@@ -365,7 +412,9 @@ void Checker::checkResult(TimePoint now, const bus::VelocityCommand& command, st
     out_of_range = out_of_range || beyond;
     all_zero = all_zero && target.second == 0.0;
   }
-  if (out_of_range && result != bus::ERROR_OUT_OF_RANGE)
+  // Contract, section 2: the end of the program is named before a value.
+  const std::uint16_t refusal = shutting_down_ ? bus::ERROR_SHUTTING_DOWN : bus::ERROR_OUT_OF_RANGE;
+  if (out_of_range && result != refusal)
   {
     fail(now, "NaN, infinity and what is out of range are refused", "answer " + std::to_string(result));
   }

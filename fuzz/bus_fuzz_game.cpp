@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace inverter_bus
 {
@@ -25,6 +26,7 @@ constexpr double PAUSE_S = 2.0;
 constexpr double RESET_S = 40.0;
 constexpr double RUN_EACH_S = 1.2;  // where every drive has a time-out of its own that is hard to meet
 constexpr double RUN_S = 4.0;
+constexpr double SHUTDOWN_S = 15.0;  // with what comes before it
 constexpr double STREAM_PERIOD_S = 0.1;
 constexpr double SPEED_TOLERANCE_HZ = 0.2;
 }  // namespace
@@ -92,6 +94,23 @@ void Game::play(Duration duration)
   world_.run(duration);
   acting_ = false;
   streaming_ = false;
+}
+
+void Game::shutDown()
+{
+  acting_ = true;
+  streaming_ = true;
+  scheduleAct();
+  std::optional<TimePoint> begun;
+  world_.at(seconds(dice_.between(0.001, 2.0)), [this, &begun] {
+    begun = world_.now();
+    world_.beginShutdown();
+  });
+  require(seconds(SHUTDOWN_S), "the end of the program",
+          [this, &begun] { return begun.has_value() && world_.shutdownDone(); });
+  acting_ = false;
+  streaming_ = false;
+  world_.endShutdown(*begun);
 }
 
 void Game::scheduleAct()

@@ -23,6 +23,8 @@ public:
   void play(Duration duration);
   /// Faults off: every drive back and refreshed, every lock releasable, every motor runs and stops.
   void calmDown();
+  /// Instead of calmDown(): the program is ended in the middle of everything.
+  void shutDown();
 
 private:
   /// Repeats a velocity as a user's program does.

@@ -25,6 +25,8 @@ namespace options = boost::program_options;
 
 // Profiles take longer to read than a bus to play: so many buses are made, and each is played on by many seeds.
 constexpr std::uint64_t BUSES = 160;
+// Not a divisor of it: every bus is ended by some seeds.
+constexpr std::uint64_t SHUTDOWN_EVERY = 7;
 
 struct Settings
 {
@@ -117,7 +119,14 @@ private:
     try
     {
       game.play(seconds(settings_.minutes * 60.0));
-      game.calmDown();
+      if (seed % SHUTDOWN_EVERY == 0)
+      {
+        game.shutDown();
+      }
+      else
+      {
+        game.calmDown();
+      }
     }
     catch (const Violation& violation)
     {

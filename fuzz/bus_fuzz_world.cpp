@@ -291,6 +291,26 @@ void World::writeFreeParameter(std::size_t index, double value, bool persist)
   coordinator_.writeParameter(clock_.now(), index, facts.free_parameter, value, persist, callback);
 }
 
+void World::beginShutdown()
+{
+  note("shutdown");
+  checker_.shutdownBegun(clock_.now());
+  coordinator_.beginShutdown(clock_.now());
+}
+
+bool World::shutdownDone()
+{
+  return coordinator_.shutdownDone(clock_.now());
+}
+
+void World::endShutdown(TimePoint begun)
+{
+  const TimePoint now = clock_.now();
+  const std::vector<std::string> unconfirmed = coordinator_.endShutdown();
+  deliver();
+  checker_.shutdownEnded(now, begun, unconfirmed);
+}
+
 double World::ram(std::size_t index, const std::string& parameter) const
 {
   simulation::KeyValues values;

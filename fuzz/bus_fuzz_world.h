@@ -64,6 +64,12 @@ public:
   void readUnknownParameter(std::size_t index);
   void writeFreeParameter(std::size_t index, double value, bool persist);
 
+  /// The program is ended: from now on motors are only stopped.
+  void beginShutdown();
+  bool shutdownDone();
+  /// Judges what is left of it.
+  void endShutdown(TimePoint begun);
+
   // --- the world ------------------------------------------------------------------------------------------------------
   /// A command of the simulated bus; where it can't happen now, nothing does.
   bool provoke(const std::string& command);

@@ -144,6 +144,8 @@ def report(program, outcome):
 def unit_programs(build):
     for path in sorted(glob.glob(os.path.join(build, 'devel', 'lib', 'inverter_bus', '*_test'))):
         name = os.path.basename(path)
+        if not os.path.exists(os.path.join(ROOT, 'test', 'unit', name + '.cpp')):
+            continue  # left over in the build from a test that has moved
         results = os.path.join(build, 'results', name)
         yield Program('unit', name, [path, '--gtest_output=xml:%s/%s.xml' % (results, name)], results=results)
 

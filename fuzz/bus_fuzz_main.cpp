@@ -86,7 +86,7 @@ public:
         number(sum.commands), number(sum.accepted), number(sum.runs), number(sum.services), number(sum.statuses),
         number(sum.values));
     std::printf("%llu stops checked, worst stop latency %.1f ms\n%s\n", number(sum.stops),
-                toSeconds(sum.worst_stop) * 1e3, failed ? "FAILED" : "no rule was broken");
+                toSeconds(sum.worst_stop) * 1e3, failed ? ("FAILED: " + failure_).c_str() : "no rule was broken");
     return failed ? 1 : 0;
   }
 
@@ -143,8 +143,10 @@ private:
     return good;
   }
 
-  void report(std::uint64_t seed, World& world, const Violation& violation) const
+  void report(std::uint64_t seed, World& world, const Violation& violation)
   {
+    const std::string what = violation.what();
+    failure_ = "seed " + std::to_string(seed) + ": " + what.substr(0, what.find('\n'));
     std::printf("seed %llu (%s) broke a rule at %.6f s\n  %s\n", number(seed), world.scene().name.c_str(),
                 toSeconds(violation.time - world.start()), violation.what());
     std::printf("The bus:\n%s\nThe drives:\n%sThe last frames (a request in flight is not among them):\n%s",
@@ -170,6 +172,7 @@ private:
   std::map<std::uint64_t, Bench> benches_;
   Duration simulated_{ 0 };
   Statistics sum_;
+  std::string failure_;
 };
 
 int main(int argc, char** argv)

@@ -209,6 +209,15 @@ class Documents(unittest.TestCase):
             for rule, _, tests in table(read('docs', 'safety_rules.md'), heading):
                 self.assertTrue(tests, 'rule %s has no test' % rule)
 
+    def testRulesAndMutationsOfBusFuzzAreThoseOfItsSources(self):
+        rows = table(read('docs', 'safety_rules.md'), '## Under any mix of faults')
+        named = [name for row in rows for name in re.findall(r'\w+', row[2])]
+        self.assertEqual(sorted(named), sorted(os.listdir(os.path.join(ROOT, 'fuzz', 'mutations'))))
+        checker = code('fuzz/*.cpp')
+        for row in rows:
+            first = re.split('[;,:]', row[1])[0]
+            self.assertIn('"%s' % first, checker, 'rule %s: bus_fuzz prints no "%s"' % (row[0], first))
+
     def testTheChangelogIsCatkins(self):
         lines = read('CHANGELOG.rst').splitlines()
         self.assertEqual(lines[1], 'Changelog for package inverter_bus')

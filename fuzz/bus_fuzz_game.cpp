@@ -321,6 +321,11 @@ void Game::callService(std::size_t index)
   if (dice < 0.3)
   {
     world_.reset(index, nullptr);
+    if (dice_.hits(0.2))
+    {
+      // Somebody else asks for it, too.
+      world_.at(seconds(dice_.between(0.0, 1.0)), [this, index] { world_.reset(index, nullptr); });
+    }
   }
   else if (dice < 0.4)
   {

@@ -296,8 +296,15 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     return current;
   }
   current.purpose = Purpose::Refresh;
-  const drive::ReadBlock block = inverter.refresh.next(now);
+  const bool resync = inverter.loopback.usable() && inverter.drive.loopback(inverter.config.node, 0);
+  drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);
+  while (!resync && !line_.mayAsk(current.request) && inverter.refresh.skipSlow())
+  {
+    // What decides over safety does not wait a second for a temperature.
+    block = inverter.refresh.next(now);
+    current.request = inverter.drive.read(inverter.config.node, block);
+  }
   // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force.
   if (!block.chosen.empty() && inverter.mayRepeatWords(now))
   {
@@ -308,7 +315,6 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     current.request = line_.mayAsk(both) ? both : current.request;
   }
   std::optional<drive::ReadBlock> variant = block;
-  const bool resync = inverter.loopback.usable() && inverter.drive.loopback(inverter.config.node, 0);
   while (!resync && variant && !line_.mayAsk(current.request))
   {
     // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
@@ -473,7 +479,7 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   }
   if (current.purpose == Purpose::StopFrame)
   {
-    return true;
+    return stop_write || readBackSafely(inverter, current);
   }
   const TimePoint allowed = std::max(line_.mayAskAt(current.request), now + std::chrono::milliseconds(1));
   if (current.purpose == Purpose::Velocity || current.purpose == Purpose::Job)
@@ -486,6 +492,24 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     inverter.refresh_not_before =
         serve_by ? std::min(allowed, std::max(*serve_by, now + std::chrono::milliseconds(1))) : allowed;
   }
+  return false;
+}
+
+/// RUN that was read off in the late reply to another request is no proof: it is asked in another shape, or, where the
+/// drive has none, the write goes again until the bar has ended.
+bool Coordinator::readBackSafely(Inverter& inverter, Current& current) const
+{
+  for (auto read = inverter.drive.variantOf(*inverter.drive.runBlock()); read; read = inverter.drive.variantOf(*read))
+  {
+    wire::Request request = inverter.prepared(inverter.drive.read(inverter.config.node, *read));
+    if (line_.mayAsk(request))
+    {
+      request.response_timeout = current.request.response_timeout;
+      current.request = request;
+      return true;
+    }
+  }
+  inverter.stop.writeAgain();
   return false;
 }
 

@@ -139,6 +139,11 @@ StopJob::Progress StopJob::fail(std::uint16_t error_id)
   return Progress::Failed;
 }
 
+void StopJob::writeAgain()
+{
+  fail(wire::ERROR_TIMEOUT);
+}
+
 bool StopJob::wantsClearLine() const
 {
   return wants_clear_line_;

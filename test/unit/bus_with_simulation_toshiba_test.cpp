@@ -33,8 +33,21 @@ simulation:
   pump: {parameters: {F870: 1, F871: 3, F875: 1, F876: 2, F877: 3, F878: 4, F879: 14}}
 )";
 
+/// Trips a second after the last request (F803, F804).
+const char* const SUPERVISED = R"(
+port: /dev/virtual
+baud_rate: 19200
+parity: even
+retries: 0
+scan_list:
+  - {name: pump, node: 1, drive: toshiba_vfs15}
+simulation:
+  pump: {parameters: {F803: 1, F804: 1}}
+)";
+
 // Frames without their check sum. E6581913 p27, p33, p35.
 constexpr const char* BLOCK_READ = "01 03 18 75 00 05";
+constexpr const char* READ_SLOW = "01 03 FD 18 00 01";
 constexpr const char* BLOCK_WRITE = "01 10 18 70 00 02 04";
 constexpr const char* BLOCK_READ_WRITE = "01 17 18 75 00 05 18 70 00 02 04";
 constexpr const char* WRITE_COMMAND = "01 06 FA 00";
@@ -315,6 +328,85 @@ TEST(Toshiba, aLostReplyDoesNotLeaveItUnwatched)
     const TimePoint lost = bus.now();
     EXPECT_TRUE(bus.runUntil(0.5, [&] { return bus.status(0).stamp > lost; })) << "rule 3.9 bars one shape only";
   }
+}
+
+/// Reads of one word that were asked within a second of one that got no answer.
+std::size_t doubtfulReads(const VirtualBus& bus, std::size_t& lost)
+{
+  using Source = simulation::FrameRecord::Source;
+  std::size_t doubtful = 0;
+  std::optional<TimePoint> barred_since;
+  std::optional<TimePoint> waiting_since;
+  for (const simulation::FrameRecord& frame : bus.frames())
+  {
+    const bool one_word = frame.bytes.size() == 8 && frame.bytes[1] == 0x03 && frame.bytes[5] == 1;
+    if (frame.source == Source::DRIVE)
+    {
+      waiting_since.reset();
+    }
+    else if (frame.source == Source::MASTER)
+    {
+      lost += waiting_since ? 1 : 0;
+      barred_since = waiting_since ? waiting_since : barred_since;
+      doubtful += one_word && barred_since && frame.time - *barred_since < seconds(1.0) ? 1 : 0;
+      waiting_since = one_word ? std::optional<TimePoint>(frame.time) : std::nullopt;
+    }
+  }
+  return doubtful;
+}
+
+TEST(Toshiba, runIsNotReadOffInWhatCouldBeTheReplyToAnotherRead)
+{
+  // All reads of one word look alike, and this drive has no loop-back to put the line into step.
+  VirtualBus bus(DIRECT);
+  settle(bus);
+  std::size_t lost = 0;
+  for (int round = 0; round < 30; ++round)
+  {
+    bus.command(0, 0.0);
+    bus.stream(0, 20.0, 0.1, 1.0);
+    bus.run(0.7 + 0.011 * round);
+    bus.clearFrames();
+    bus.world("pump lost_reply count 1 function 3");
+    const std::uint64_t timeouts = bus.line().counters().timeouts;
+    ASSERT_TRUE(bus.runUntil(2.0, [&] { return bus.line().counters().timeouts > timeouts; }));
+    EXPECT_TRUE(bus.wait(bus.stop(0)).success);
+    EXPECT_EQ(bus.motor("pump", "run_command"), 0.0);
+    EXPECT_EQ(doubtfulReads(bus, lost), 0U) << "round " << round;
+    bus.run(1.5);
+  }
+  EXPECT_GT(lost, 0U) << "no read of one word was lost: nothing was shown";
+}
+
+TEST(Toshiba, aLostSlowValueDelaysNoStatus)
+{
+  VirtualBus bus(DIRECT);
+  settle(bus);
+  for (int round = 0; round < 20; ++round)
+  {
+    // FD18, the temperature or torque: one word, like the RUN command, the marker of a restart and the voltage.
+    bus.clearFrames();
+    ASSERT_TRUE(bus.runUntil(3.0, [&] { return bus.count(READ_SLOW) > 0; }));
+    bus.world("pump lost_reply count 1 function 3");
+    bus.runUntil(2.0, [&] { return bus.line().counters().timeouts > static_cast<unsigned>(round); });
+    const TimePoint lost = bus.now();
+    EXPECT_TRUE(bus.runUntil(0.5, [&] { return bus.status(0).stamp > lost; })) << "round " << round;
+    bus.run(0.1 * round);
+  }
+}
+
+TEST(Toshiba, itsOwnTimeOutNeverPassesWhateverReplyIsLost)
+{
+  VirtualBus bus(SUPERVISED);
+  settle(bus);
+  bus.stream(0, 20.0, 0.1, 40.0);
+  for (int round = 0; round < 20; ++round)
+  {
+    bus.run(1.7 + 0.013 * round);
+    bus.world("pump lost_reply count 1 function 3");
+  }
+  EXPECT_EQ(bus.motor("pump", "tripped"), 0.0);
+  EXPECT_NEAR(bus.motor("pump", "frequency"), 20.0, 0.01);
 }
 
 TEST(Toshiba, isOfflineSoonAfterItWasSwitchedOff)

@@ -196,6 +196,7 @@ private:
   std::optional<Current> composeJob(TimePoint now, const Pick& pick);
   Current composeProbe(const Pick& pick);
   bool makeSafe(TimePoint now, Current& current);
+  bool readBackSafely(Inverter& inverter, Current& current) const;
   Duration probeTimeout(const Inverter& inverter) const;
   TimePoint earliestDeadMan(TimePoint wake) const;
 

@@ -58,6 +58,8 @@ public:
   /// The same of the refresh under way: what has come so far.
   const drive::Monitor& words() const;
   TimePoint wordsSentAt() const;
+  /// Leaves the read at hand out for a while if it is one of the slow values; false: it is not, or nothing follows it.
+  bool skipSlow();
   /// The marker of a restart that was just read is dealt with: the rest of this refresh must not find it once more, after
   /// the drive has been told what it had forgotten.
   void restartNoted();

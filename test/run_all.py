@@ -20,6 +20,11 @@ import xml.etree.ElementTree
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
+# Whole nodes under a sanitizer, unless --only ros asks for all of them (they keep real time: that takes a quarter of an
+# hour). Callers from many threads against the bus thread, and every way for a node to end.
+SANITIZED_ROS_TESTS = ('storm', 'shutdown')
+
+
 class Program:
     """One test program: how to run it and how to count its cases."""
 
@@ -31,6 +36,8 @@ class Program:
         self.results = results  # directory of JUnit files; None: a Python unittest or a single check
         self.environment = environment or {}
         self.directory = directory
+        self.reports = None  # directory that the sanitizers of its processes write to
+        self.shall_be_reported = False  # a probe: a finding is a success, and none is a failure
 
 
 class Outcome:
@@ -49,6 +56,9 @@ def run(program, logs):
     if program.results:
         shutil.rmtree(program.results, ignore_errors=True)
         os.makedirs(program.results)
+    if program.reports:
+        shutil.rmtree(program.reports, ignore_errors=True)
+        os.makedirs(program.reports)
     log = os.path.join(logs, '%s_%s.log' % (program.kind, program.name))
     start = time.monotonic()
     with open(log, 'w') as stream:
@@ -69,12 +79,25 @@ def run(program, logs):
     with open(log, errors='replace') as stream:
         outcome.output = stream.read()
     count(program, status, outcome)
+    judge_reports(program, outcome)
     return outcome
 
 
 def start_program(program, environment, stream):
     return subprocess.Popen(program.command, cwd=program.directory, env=environment, stdin=subprocess.DEVNULL,
                             stdout=stream, stderr=subprocess.STDOUT, start_new_session=True)
+
+
+def judge_reports(program, outcome):
+    """A finding fails the program, whichever of its processes it was in and whatever that made of its exit status."""
+    reports = sorted(glob.glob(os.path.join(program.reports, '*'))) if program.reports else []
+    if program.shall_be_reported:
+        outcome.passed, outcome.failed = (1, []) if reports else (0, ['%s: its error is not reported' % program.name])
+        return
+    for path in reports:
+        outcome.failed.append('%s: sanitizer report %s' % (program.name, path))
+        with open(path, errors='replace') as stream:
+            outcome.output += '\n' + stream.read()
 
 
 def end_group(process):
@@ -161,7 +184,7 @@ def ros_programs(build):
 
 def lint_programs(build):
     sources = [path for pattern in ('include/**/*.h', 'src/**/*.h', 'src/**/*.cpp', 'test/**/*.h', 'test/**/*.cpp',
-                                    'benchmark/**/*.cpp', 'fuzz/**/*.h', 'fuzz/**/*.cpp')
+                                    'benchmark/**/*.h', 'benchmark/**/*.cpp', 'fuzz/**/*.h', 'fuzz/**/*.cpp')
                for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True))]
     # Other versions format a little differently.
     if shutil.which('clang-format-14'):
@@ -215,6 +238,40 @@ def other_programs(build):
                   time_limit=420.0)
 
 
+def sanitizer_options(sanitizer, reports):
+    """Every process writes its findings to a file of its own: what a node says to its log, nobody would see.
+
+    The undefined behaviour sanitizer of GCC has no files beside the address sanitizer: it aborts, and that one reports it.
+    """
+    options = {'address': {'ASAN_OPTIONS': 'detect_leaks=1:detect_stack_use_after_return=1:handle_abort=1',
+                           'LSAN_OPTIONS': 'print_suppressions=0:suppressions=\'%s\'',
+                           'UBSAN_OPTIONS': 'print_stacktrace=1:halt_on_error=1:abort_on_error=1'},
+               'thread': {'TSAN_OPTIONS': 'second_deadlock_stack=1:suppressions=\'%s\''}}[sanitizer]
+    suppressions = os.path.join(ROOT, 'test', {'address': 'leak', 'thread': 'thread'}[sanitizer] + '_sanitizer.supp')
+    # The same file for all: they share their settings, and the last one's count.
+    log_path = ":log_path='%s'" % os.path.join(reports, 'report')
+    return {name: text.replace('%s', suppressions) + log_path for name, text in options.items()}
+
+
+def sanitized(programs, sanitizer, build):
+    for program in programs:
+        program.reports = os.path.join(build, 'sanitizer_reports', '%s_%s' % (program.kind, program.name))
+        program.environment.update(sanitizer_options(sanitizer, program.reports))
+        program.time_limit *= 3.0
+        yield program
+
+
+def probe_programs(build):
+    """Programs with an error each: a build whose sanitizer finds nothing, or whose findings get lost, does not pass."""
+    probe = os.path.join(build, 'devel', 'lib', 'inverter_bus', 'sanitizer_probe')
+    errors = subprocess.run([probe], stdout=subprocess.PIPE, universal_newlines=True, check=True).stdout.split()
+    for error in errors:
+        # By way of a shell that hides its exit status, as the harness of the integration tests may.
+        program = Program('probe', error, ['sh', '-c', '"$1" "$2"; true', 'sh', probe, error])
+        program.shall_be_reported = True
+        yield program
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--build', required=True)
@@ -229,19 +286,23 @@ def main():
     if arguments.only:
         groups = {arguments.only: groups[arguments.only]}
     elif arguments.sanitize:
-        few_seeds = functools.partial(fuzz_programs, seeds=100)
-        groups = {'unit': unit_programs, 'fuzz': few_seeds, 'ros': ros_programs}
+        groups = {'unit': unit_programs, 'fuzz': functools.partial(fuzz_programs, seeds=100),
+                  'ros': lambda build: [program for program in ros_programs(build)
+                                        if program.name in SANITIZED_ROS_TESTS]}
         if arguments.sanitize == 'thread':
-            del groups['fuzz']  # the targets have one thread
-        os.environ['ASAN_OPTIONS'] = 'detect_leaks=0'
-        os.environ['UBSAN_OPTIONS'] = 'halt_on_error=1:print_stacktrace=1'
-        os.environ['TSAN_OPTIONS'] = 'suppressions=' + os.path.join(ROOT, 'test', 'thread_sanitizer.supp')
+            del groups['fuzz']  # they have one thread
+    if arguments.sanitize:
+        groups = {'probe': probe_programs, **groups}
 
     logs = os.path.join(build, 'test_logs')
     os.makedirs(logs, exist_ok=True)
     passed, failed, start = 0, 0, time.monotonic()
     for group, programs in groups.items():
-        chosen = [program for program in programs(build) if arguments.match in program.name]
+        if arguments.sanitize:
+            chosen = list(sanitized(programs(build), arguments.sanitize, build))
+        else:
+            chosen = list(programs(build))
+        chosen = [program for program in chosen if arguments.match in program.name or program.shall_be_reported]
         # Whole nodes on a simulated line keep real time and mostly wait: two at a time. Peers share names and ports.
         cores = os.cpu_count() or 1
         workers = {'unit': cores, 'lint': cores, 'fuzz': cores, 'ros': min(2, cores)}.get(group, 1)

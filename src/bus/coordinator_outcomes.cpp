@@ -624,6 +624,7 @@ bool Coordinator::shutdownDone(TimePoint now)
 
 std::vector<std::string> Coordinator::endShutdown()
 {
+  ended_ = true;
   std::vector<std::string> unconfirmed;
   for (const auto& inverter : inverters_)
   {

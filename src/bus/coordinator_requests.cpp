@@ -297,6 +297,12 @@ void Coordinator::requestStop(TimePoint now, Inverter& inverter, StopMode mode, 
 
 void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback)
 {
+  if (ended_)
+  {
+    // Nothing would ever confirm it: the caller would wait for nothing.
+    refuseCall(callback, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));
+    return;
+  }
   StopCall call;
   call.callback = std::move(callback);
   call.expires = now + seconds(bounds().stop);

@@ -24,7 +24,8 @@ void FlightRecorder::add(const wire::FrameEvent& event)
     ring_.push_back(event);
     return;
   }
-  ring_[next_] = event;
+  // Moved in: a plain assignment would keep the memory of the longest frame that was ever in this place.
+  ring_[next_] = wire::FrameEvent(event);
   next_ = (next_ + 1) % capacity_;
 }
 

@@ -326,6 +326,26 @@ TEST(Safety, shutdownWritesEveryStopBeforeItReadsTheFirstBack)
   EXPECT_EQ(sent[1], "02 05 00 00 00 00");
 }
 
+TEST(Safety, whatIsAskedForAfterTheShutdownIsRefusedAtOnce)
+{
+  VirtualBus bus(TWO_BELTS);
+  bus.settleIn();
+  bus.coordinator().beginShutdown(bus.now());
+  ASSERT_TRUE(bus.runUntil(2.0, [&] { return bus.coordinator().shutdownDone(bus.now()); }));
+  bus.coordinator().endShutdown();
+  bus.coordinator().takeAnswers();
+  bus.stop(std::nullopt);
+  bus.stop(0);
+  bus.reset(0);
+  bus.readParameter(0, "F002");
+  const bus::PendingAnswers answers = bus.coordinator().takeAnswers();
+  ASSERT_EQ(answers.size(), 4U);
+  for (const auto& answer : answers)
+  {
+    EXPECT_EQ(answer.second.error_id, bus::ERROR_SHUTTING_DOWN);
+  }
+}
+
 TEST(Safety, aTripIsActedUponAlthoughTheRestOfTheStatusIsLost)
 {
   VirtualBus bus(ONE_BELT);

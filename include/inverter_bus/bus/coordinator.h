@@ -262,6 +262,8 @@ private:
   std::vector<TimePoint> last_published_;
 
   bool shutting_down_ = false;
+  /// Nobody asks for the next exchange any more.
+  bool ended_ = false;
   TimePoint shutdown_deadline_;
   std::vector<bool> shutdown_tried_;
   std::vector<bool> released_;

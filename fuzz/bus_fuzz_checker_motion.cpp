@@ -175,9 +175,8 @@ void Checker::shutdownEnded(TimePoint now, TimePoint begun, const std::vector<st
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     const std::string name = scene_.inverters[index].name + ":";
-    const bool named = std::any_of(unconfirmed.begin(), unconfirmed.end(), [&](const std::string& text) {
-      return text.compare(0, name.size(), name) == 0;
-    });
+    const bool named = std::any_of(unconfirmed.begin(), unconfirmed.end(),
+                                   [&](const std::string& text) { return text.compare(0, name.size(), name) == 0; });
     const bool commanded = lanes_[index].accepted_at != TimePoint();
     if (commanded && !named && runLatched(index))
     {

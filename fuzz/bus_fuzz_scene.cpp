@@ -22,7 +22,7 @@ constexpr double HZ_APART = 5.5;
 constexpr double RANGE_HZ = 3.5;
 // More than any request and its reply have together in bytes, a read of a trip memory included.
 constexpr double LONGEST_FRAMES = 90.0;
-constexpr double PROBE_FRAME = 24.0;  // characters
+constexpr double PROBE_FRAME = 24.0;    // characters
 constexpr double REPLY_SLACK_S = 0.03;  // wire::Line waits so much longer for the rest of a reply that has begun
 constexpr double PROFILE_DELAY_S = 0.01;
 

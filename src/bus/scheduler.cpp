@@ -332,7 +332,9 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
 std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
 {
   // One that did not answer when its time came lets the others go before it is tried again.
-  const auto key = [&](std::size_t index) { return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by); };
+  const auto key = [&](std::size_t index) {
+    return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by);
+  };
   std::optional<std::size_t> most_urgent;
   for (std::size_t index = 0; index < views.size(); ++index)
   {

@@ -253,6 +253,11 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
   switch (pick.what)
   {
     case Pick::What::Stop:
+      if (shutting_down_ && inverter.offline() && inverter.stop.written())
+      {
+        // Rule 4.4: its one frame is the stop itself.
+        inverter.stop.writeAgain();
+      }
       current.purpose = Purpose::StopFrame;
       current.request = inverter.prepared(inverter.stop.next());
       if (pick.probe)
@@ -462,7 +467,8 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   }
   const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
   current.may_be_late = stop_write;
-  if (stop_write && !inverter.stop.wantsClearLine())
+  const bool last_frame = shutting_down_ && inverter.offline();
+  if (stop_write && (last_frame || !inverter.stop.wantsClearLine()))
   {
     return true;
   }
@@ -486,11 +492,17 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   {
     scheduler_->postpone(current.pick.command, allowed);
   }
+  else if (current.purpose == Purpose::Setting)
+  {
+    // The status may have another shape.
+    inverter.setting_not_before = allowed;
+  }
   else
   {
-    const auto serve_by = keepAlive(inverter) ? inverter.serveBy(budget_.deadline_margin) : std::nullopt;
-    inverter.refresh_not_before =
-        serve_by ? std::min(allowed, std::max(*serve_by, now + std::chrono::milliseconds(1))) : allowed;
+    const auto serve_by =
+        current.purpose == Purpose::Refresh ? inverter.serveBy(budget_.deadline_margin) : std::nullopt;
+    const bool early = serve_by && *serve_by < allowed && keepAlive(inverter);
+    inverter.refresh_not_before = early ? std::max(*serve_by, now + std::chrono::milliseconds(1)) : allowed;
   }
   return false;
 }

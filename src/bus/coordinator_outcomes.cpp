@@ -77,7 +77,9 @@ void Coordinator::done(const wire::Reply& reply)
   {
     inverter.loopback.otherAnswered();
   }
-  if (current.resync && alive(reply))
+  // A loop-back that is refused has put nothing into step: to a stop that is a failed attempt.
+  const bool refused_stop = current.purpose == Purpose::StopFrame && reply.outcome == wire::Outcome::Exception;
+  if (current.resync && alive(reply) && !refused_stop)
   {
     // The line is in step again: the real request keeps its turn.
     finishExchange(current, reply, true);
@@ -98,7 +100,8 @@ void Coordinator::done(const wire::Reply& reply)
       doneRefresh(current, reply);
       break;
     case Purpose::KeepAlive:
-      finishExchange(current, reply, true);
+      // One that is lost gives the turn away.
+      finishExchange(current, reply, alive(reply));
       if (!alive(reply))
       {
         noteLost(reply.finished_at, inverter, reply.error_id);

@@ -106,7 +106,10 @@ Permission Interlock::judge(TimePoint now, const Publisher& publisher) const
 {
   const Stream* stream = find(publisher.name);
   const bool old_message = publisher.latched && publisher.first_on_connection;
-  if (old_message && stream != nullptr && stream->topics.count(publisher.topic) != 0)
+  // One that is not known may be among the forgotten.
+  const bool heard_before =
+      stream == nullptr ? forgotten_last_ != TimePoint() : stream->topics.count(publisher.topic) != 0;
+  if (old_message && heard_before)
   {
     return Permission::Repeat;
   }

@@ -126,6 +126,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   setup_open = false;
   block_note_.clear();
   connect_not_before = TimePoint();
+  setting_not_before = TimePoint();
   interlock.offline();
   movement.drop();
   movement.forgetWords();
@@ -169,7 +170,7 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 bool Inverter::connectDue(TimePoint now) const
 {
-  return !offline_ && now >= connect_not_before && settings.urgent();
+  return !offline_ && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)
@@ -739,7 +740,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();
   view.refresh_not_before = refresh_not_before;
-  view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now;
+  view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now && setting_not_before <= now;
   view.serve_by = serveBy(deadline_margin);
   return view;
 }

@@ -369,7 +369,8 @@ bool Refresh::skipSlow()
   const Block& block = blocks_[plan_[position_]];
   // The first word of a leftover RUN is waited for.
   const bool waited_for = !run_heard_ && carries(block.read, "run_seen");
-  return block.kind == Class::Slow && !waited_for && postpone();
+  const bool last = position_ + 1 >= plan_.size();
+  return block.kind == Class::Slow && !waited_for && !last && postpone();
 }
 
 /// The read at hand is not to be had now. Without a slow one the refresh goes on, without a fast one it has no result.

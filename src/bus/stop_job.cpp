@@ -135,6 +135,8 @@ StopJob::Progress StopJob::fail(std::uint16_t error_id)
   last_error_ = error_id;
   step_ = 0;
   acknowledged_in_doubt_ = false;
+  // A loop-back and a write take turns: RUN may still be on.
+  wants_clear_line_ = false;
   ++attempts_;
   return Progress::Failed;
 }

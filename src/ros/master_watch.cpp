@@ -70,7 +70,7 @@ MasterWatch::State MasterWatch::look()
   arguments[1] = ros::this_node::getName();
   const bool known = ros::master::execute("lookupNode", arguments, response, address, false);
   // Without a response the master ended just now.
-  return known || !response.valid() ? State::Known : State::Unknown;
+  return known ? State::Known : (response.valid() ? State::Unknown : State::NoMaster);
 }
 
 std::optional<bus::Finding> MasterWatch::findingOf(State state)

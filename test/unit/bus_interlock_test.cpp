@@ -319,6 +319,16 @@ TEST(Interlock, isShownLockedWhileARefusedStreamGoesOn)
 
 // --- latched publishers ----------------------------------------------------------------------------------------------
 
+TEST(Interlock, oldMessageOfAPublisherThatWasForgottenAmongManyIsNoCommand)
+{
+  Running belt;
+  for (int number = 0; number < 100; ++number)
+  {
+    belt.command(5000 + number, publisher("/anonymous_" + std::to_string(number)));
+  }
+  EXPECT_EQ(belt.command(60000, latched("/planner")), Permission::Repeat);
+}
+
 TEST(Interlock, firstMessageOfALatchedPublisherThatWasHeardBeforeIsARepeat)
 {
   Running belt;

@@ -240,6 +240,21 @@ TEST(StopJob, acknowledgementThatMayBeAnotherRequestsConfirmsNothingWhereTheDriv
   EXPECT_EQ(exchange(stop, ACKNOWLEDGED), Progress::Confirmed);
 }
 
+TEST(StopJob, aLoopBackAndAWriteTakeTurnsUntilTheLineIsClear)
+{
+  drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());
+  profile.status.erase("run_seen");
+  profile.status.erase("running");
+  const drive::Drive drive(profile);
+  StopJob stop(drive, 1);
+  stop.request(at(0), StopMode::Decelerate);
+  stop.sent(at(1));
+  stop.done(ACKNOWLEDGED, true);
+  ASSERT_TRUE(stop.wantsClearLine());
+  EXPECT_EQ(stop.done(lost()), Progress::Failed) << "the loop-back";
+  EXPECT_FALSE(stop.wantsClearLine()) << "RUN may still be on: the write goes again";
+}
+
 TEST(StopJob, anUpgradeWaitsForNoClearLine)
 {
   drive::ProfileChanges changes;

@@ -170,6 +170,8 @@ public:
   bool setup_open = false;
   TimePoint refresh_not_before;
   TimePoint connect_not_before;
+  /// Its settings are not asked for before that.
+  TimePoint setting_not_before;
   int refresh_tries = 0;
   int velocity_tries = 0;
   /// Frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.

@@ -243,14 +243,14 @@ def sanitizer_options(sanitizer, reports):
 
     The undefined behaviour sanitizer of GCC has no files beside the address sanitizer: it aborts, and that one reports it.
     """
+    suppressions = os.path.join(ROOT, 'test', 'thread_sanitizer.supp')
     options = {'address': {'ASAN_OPTIONS': 'detect_leaks=1:detect_stack_use_after_return=1:handle_abort=1',
-                           'LSAN_OPTIONS': 'print_suppressions=0:suppressions=\'%s\'',
+                           'LSAN_OPTIONS': 'detect_leaks=1',
                            'UBSAN_OPTIONS': 'print_stacktrace=1:halt_on_error=1:abort_on_error=1'},
-               'thread': {'TSAN_OPTIONS': 'second_deadlock_stack=1:suppressions=\'%s\''}}[sanitizer]
-    suppressions = os.path.join(ROOT, 'test', {'address': 'leak', 'thread': 'thread'}[sanitizer] + '_sanitizer.supp')
+               'thread': {'TSAN_OPTIONS': "second_deadlock_stack=1:suppressions='%s'" % suppressions}}[sanitizer]
     # The same file for all: they share their settings, and the last one's count.
     log_path = ":log_path='%s'" % os.path.join(reports, 'report')
-    return {name: text.replace('%s', suppressions) + log_path for name, text in options.items()}
+    return {name: text + log_path for name, text in options.items()}
 
 
 def sanitized(programs, sanitizer, build):

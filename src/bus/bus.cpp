@@ -9,6 +9,8 @@
 #include <cstring>
 #include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "inverter_bus/bus/bus_loop.h"
 #include "inverter_bus/bus/coordinator.h"
@@ -66,6 +68,7 @@ struct Bus::Implementation
   BusLoop loop;
   bool poked = false;
   bool ending = false;
+  std::vector<std::string> unconfirmed;
   std::atomic<bool> in_use{ false };
   std::thread thread;
 };
@@ -137,6 +140,8 @@ void Bus::Implementation::run()
     std::unique_lock<std::mutex> lock(mutex);
     if (ending && coordinator.shutdownDone(clock.now()))
     {
+      // Under the same lock: a stop that is called a moment later would be named as one that could not be confirmed.
+      unconfirmed = coordinator.endShutdown();
       return;
     }
     if (next_round > clock.now() && !poked)
@@ -185,14 +190,14 @@ std::vector<std::string> Bus::shutdown()
   {
     bus.thread.join();
   }
-  std::vector<std::string> unconfirmed;
+  else
   {
     const std::lock_guard<std::mutex> guard(bus.mutex);
-    unconfirmed = bus.coordinator.endShutdown();
+    bus.unconfirmed = bus.coordinator.endShutdown();
   }
   bus.deliver();
   bus.loop.close();
-  return unconfirmed;
+  return bus.unconfirmed;
 }
 
 std::uint16_t Bus::command(const VelocityCommand& command)

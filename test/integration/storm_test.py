@@ -12,6 +12,7 @@ import unittest
 import rostest
 import rospy
 from harness import PATIENCE, Bench, belts, init, wait_for
+from inverter_bus.srv import ReadFaults, ReadParameter, Reset, Stop, WriteParameter
 from std_srvs.srv import Trigger
 
 VELOCITIES = (20.0, -20.0, 0.0, 35.0, 0.0, float('nan'), 1e9)
@@ -45,10 +46,6 @@ class Caller:
                     self.problems.append('refused without a reason: %s' % answer)
             self.rounds += 1
 
-    def end(self):
-        self.ended.set()
-        self.thread.join(PATIENCE)
-
 
 class Storm(unittest.TestCase):
     def setUp(self):
@@ -58,23 +55,52 @@ class Storm(unittest.TestCase):
         self.over = threading.Event()
 
     def tearDown(self):
+        self.end_callers()
+        self.bench.close()
+
+    def end_callers(self):
         self.over.set()
         for caller in self.callers:
-            caller.end()
-        self.bench.close()
+            caller.ended.set()
+        for caller in self.callers:
+            caller.thread.join(PATIENCE)
+
+    def proxy(self, name, kind):
+        """Who calls it when the node is gone gets an exception at once."""
+        path = '%s/%s' % (self.bench.driver_name, name)
+        rospy.wait_for_service(path, PATIENCE)
+        return rospy.ServiceProxy(path, kind)
 
     def start_callers(self):
         """Three threads for each inverter and four for the bus."""
+        stop_all = self.proxy('stop', Stop)
+        dump_trace = self.proxy('dump_trace', Trigger)
+        actions = [self.send_group, self.harm,
+                   lambda number: self.answer_and_news(stop_all(number % 3)),
+                   lambda number: self.answer_and_news(dump_trace())]
         for belt in self.bench.inverters.values():
-            self.callers += [Caller(lambda number, belt=belt: self.send(belt, number)),
-                             Caller(lambda number, belt=belt: belt.read_parameter(('F002', 'Z999')[number % 2])),
-                             Caller(lambda number, belt=belt: self.call(belt, number))]
-        rospy.wait_for_service(self.bench.driver_name + '/dump_trace', PATIENCE)
-        dump_trace = rospy.ServiceProxy(self.bench.driver_name + '/dump_trace', Trigger)
-        self.callers += [Caller(self.send_group),
-                         Caller(self.stop_all),
-                         Caller(lambda number: self.dump(dump_trace)),
-                         Caller(self.harm)]
+            actions += [self.sender(belt), self.reader(belt), self.user(belt)]
+        self.callers = [Caller(action) for action in actions]
+
+    def sender(self, belt):
+        def send(number):
+            belt.send(VELOCITIES[number % len(VELOCITIES)])
+            self.wait_for_news(belt)
+
+        return send
+
+    def reader(self, belt):
+        read_parameter = self.proxy(belt.name + '/read_parameter', ReadParameter)
+        return lambda number: read_parameter(name=('F002', 'Z999')[number % 2])
+
+    def user(self, belt):
+        reset = self.proxy(belt.name + '/reset', Reset)
+        read_faults = self.proxy(belt.name + '/read_faults', ReadFaults)
+        stop = self.proxy(belt.name + '/stop', Stop)
+        write_parameter = self.proxy(belt.name + '/write_parameter', WriteParameter)
+        calls = (lambda number: reset(), lambda number: read_faults(), lambda number: stop(mode=number % 5),
+                 lambda number: write_parameter(name='F002', value=0.5 + number % 2, persist=number % 3 == 0))
+        return lambda number: calls[number % len(calls)](number)
 
     def wait_for_news(self, belt):
         """What a thread without a call waits for before its next round."""
@@ -82,28 +108,14 @@ class Storm(unittest.TestCase):
         while belt.status is before and not self.over.wait(0.01):
             pass
 
-    def send(self, belt, number):
-        belt.send(VELOCITIES[number % len(VELOCITIES)])
-        self.wait_for_news(belt)
-
     def send_group(self, number):
         velocity = VELOCITIES[number % len(VELOCITIES)]
         self.bench.send_group(belt_1=velocity, belt_2=-velocity, belt_3=10.0, **({'nobody': 1.0} if number % 5 == 0 else {}))
         self.wait_for_news(self.bench['belt_1'])
 
-    def stop_all(self, number):
-        answer = self.bench.stop_all(number % 3)
+    def answer_and_news(self, answer):
         self.wait_for_news(self.bench['belt_2'])
         return answer
-
-    def dump(self, dump_trace):
-        answer = dump_trace()
-        self.wait_for_news(self.bench['belt_3'])
-        return answer
-
-    def call(self, belt, number):
-        return (belt.reset, belt.read_faults, lambda: belt.stop(number % 5),
-                lambda: belt.write_parameter('F002', 0.5 + number % 2, persist=number % 3 == 0))[number % 4]()
 
     def harm(self, number):
         """Answers that take long or never come: what the bus thread does on its own."""
@@ -122,12 +134,12 @@ class Storm(unittest.TestCase):
 
     def testEveryCallIsAnsweredAndAStopOfAllEndsEverything(self):
         self.start_callers()
-        self.wait_for_rounds(8)
+        self.wait_for_rounds(5)
+        self.end_callers()
         for caller in self.callers:
-            caller.end()
             self.assertFalse(caller.thread.is_alive(), 'a call was not answered')
             self.assertEqual(caller.problems, [])
-        self.assertGreater(sum(caller.successes for caller in self.callers), 30)
+        self.assertGreater(sum(caller.successes for caller in self.callers), 20)
         self.assertTrue(self.bench.driver.running(), self.bench.driver.log())
         answer = self.bench.stop_all()
         self.assertTrue(answer.success, answer.message)
@@ -135,9 +147,10 @@ class Storm(unittest.TestCase):
 
     def testShutdownInTheMiddleStopsEveryMotor(self):
         self.start_callers()
-        self.wait_for_rounds(3)
+        self.wait_for_rounds(2)
         self.bench.driver.signal(signal.SIGTERM)
         self.assertEqual(self.bench.driver.wait(), 0, self.bench.driver.log())
+        self.end_callers()
         self.assertAllStopped()
         self.assertIn('every motor that this node may have set running is confirmed as stopped', self.bench.driver.log())
 

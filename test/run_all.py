@@ -20,8 +20,8 @@ import xml.etree.ElementTree
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
-# Whole nodes under a sanitizer, unless --only ros asks for all of them (they keep real time: that takes a quarter of an
-# hour). Callers from many threads against the bus thread, and every way for a node to end.
+# Whole nodes under a sanitizer, unless --only ros asks for all of them, which keep real time: callers from many threads
+# against the bus thread, and every way for a node to end.
 SANITIZED_ROS_TESTS = ('storm', 'shutdown')
 
 

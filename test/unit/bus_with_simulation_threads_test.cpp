@@ -370,7 +370,7 @@ TEST_F(Threads, everyCallIsAnsweredOnceAndAStopOfAllEndsEverything)
 {
   startUnlocked();
   startCallers();
-  EXPECT_TRUE(ledger_.waitForSuccesses(60));
+  EXPECT_TRUE(ledger_.waitForSuccesses(40));
   endCallers();
   bus_->stop(std::nullopt, 0, ledger_.open());
   EXPECT_TRUE(ledger_.waitForOpen(0));
@@ -414,7 +414,7 @@ TEST_F(Threads, aPortThatIsPulledOutMeanwhileComesBack)
   startCallers();
   for (std::uint64_t time = 1; time <= 2; ++time)
   {
-    EXPECT_TRUE(ledger_.waitForSuccesses(ledger_.successes() + 8));
+    EXPECT_TRUE(ledger_.waitForSuccesses(ledger_.successes() + 4));
     EXPECT_EQ(runner_->command("bus unplug"), "ok");
     EXPECT_TRUE(watcher_.waitForBus([](const bus::BusStatus& status) { return !status.connected; }));
     EXPECT_EQ(runner_->command("bus plug"), "ok");

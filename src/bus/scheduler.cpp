@@ -13,6 +13,8 @@ namespace
 {
 // Contract, rule 3.3: three attempts at once, then every second exchange at most.
 constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
+// A flood of stops: so many exchanges, then a read-back waits for one of another kind.
+constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 // Other exchanges between two frames of a stop that insists.
 constexpr std::uint64_t INSISTING_SPACING = 1;
 // Rule 3.14: the lowest class gets at least every eighth exchange.
@@ -189,6 +191,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
   // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
   const bool goes_on = pick.what == Pick::What::Refresh && half_refreshed_ == pick.inverter;
   deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
+  stops_in_a_row_ = pick.what == Pick::What::Stop ? stops_in_a_row_ + 1 : 0;
   if (pick.what == Pick::What::Stop)
   {
     bookStop(pick, views);
@@ -200,7 +203,10 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 {
   if (auto stop = pickStop(views, false))
   {
-    return *stop;
+    // Who stops again and again must not blind the driver: not a stop's write, but its read-back lets another one through.
+    const bool gives_way = views[stop->inverter].stop_written && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
+    const auto other = gives_way ? chooseBehindStops(now, views) : std::nullopt;
+    return other ? *other : *stop;
   }
   if (auto urgent = pickCommand(now, true))
   {

@@ -958,6 +958,25 @@ TEST(Scheduler, driveWhoseTimeOutIsNearestGoesFirst)
   EXPECT_EQ(VirtualLine::name(line.next()), "R2");
 }
 
+TEST(Scheduler, readBackOfAFloodOfStopsLetsARefreshThrough)
+{
+  VirtualLine line(2);
+  line.views[0].stop_pending = true;
+  int others = 0;
+  for (int exchange = 0; exchange < 40; ++exchange)
+  {
+    // Written, read back, and asked for again at once.
+    line.views[0].stop_written = exchange % 2 == 1;
+    const Pick pick = line.next();
+    const bool other = pick.what != Pick::What::Stop;
+    EXPECT_FALSE(other && !line.views[0].stop_written) << "a stop's write waits for nothing";
+    others += other ? 1 : 0;
+    line.scheduler.done(pick, line.now, line.now + Ms(10), false, true);
+    line.now += Ms(10);
+  }
+  EXPECT_GE(others, 3);
+}
+
 TEST(Scheduler, driveThatIsSilentWhenItsTimeHasComeLetsTheOthersGoFirst)
 {
   VirtualLine line(3);

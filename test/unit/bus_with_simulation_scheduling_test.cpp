@@ -341,5 +341,27 @@ TEST(Scheduling, thirtyOneStationsAreServedRoundRobin)
     EXPECT_LE(toSeconds(bus.now() - bus.status(index).stamp), 5.0);
   }
 }
+TEST(Scheduling, whoStopsAgainAndAgainDoesNotBlindTheDriver)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+scan_list:
+  - {name: belt_1, node: 1, drive: omron_mx2}
+  - {name: belt_2, node: 2, drive: omron_mx2}
+  - {name: belt_3, node: 3, drive: omron_mx2}
+)");
+  bus.settleIn();
+  bus.world("belt_3 trip 7");
+  const TimePoint end = bus.now() + seconds(5.0);
+  while (bus.now() < end)
+  {
+    EXPECT_TRUE(bus.wait(bus.stop(0)).success);
+  }
+  EXPECT_TRUE(bus.status(2).monitor.faulted.value_or(false)) << "the trip of another drive was not seen";
+  for (std::size_t index = 0; index < 3; ++index)
+  {
+    EXPECT_GT(bus.status(index).stamp, end - seconds(2.0)) << index;
+  }
+}
 }  // namespace
 }  // namespace inverter_bus

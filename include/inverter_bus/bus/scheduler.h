@@ -183,6 +183,7 @@ private:
   /// Its last refresh was not answered.
   std::vector<bool> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
+  unsigned stops_in_a_row_ = 0;
 
   // commands and refreshes
   CommandId unit_ = 0;

@@ -43,10 +43,15 @@ class MidExchange(unittest.TestCase):
         self.bench.simulate('belt_1 clear')
 
     def unanswered(self, station):
-        """Waits until the last frame on the line is a request to that station, and returns it."""
+        """Waits until the last frame on the line is a request to that station, for longer than an answer takes."""
+        seen = {'request': None, 'since': 0.0}
+
         def request():
             last = self.bench.frames(1)[-1]
-            return last if last.sender == 'master' and last.station == station else None
+            if seen['request'] is None or last.time != seen['request'].time:
+                seen.update(request=last, since=time.monotonic())
+            waits = last.sender == 'master' and last.station == station
+            return last if waits and time.monotonic() - seen['since'] > 0.2 * PATIENCE_OF_THE_LINE else None
 
         return wait_for(request, 'a request to station %s that awaits its reply' % station)
 
@@ -129,19 +134,28 @@ class MidExchange(unittest.TestCase):
 
     def testAStopThatMissesItsBoundLeavesAFlightRecorderFile(self):
         """Rule 4.11: the whole driver is held up, as by a machine that swaps, with an accepted stop in its hands."""
+        for _ in range(5):
+            self.holdUpAStop()
+            # On a busy machine the call may arrive when the exchange is over: then the stop was not late.
+            if self.bench.bus_status.stop_latency_max > PATIENCE_OF_THE_LINE:
+                break
+        wait_for(lambda: [text for text in self.bench.traces() if 'to the wire' in text], 'a flight recorder file')
+        wait_for(lambda: self.bench.bus_status.stop_latency_max > PATIENCE_OF_THE_LINE, 'the latency in bus_status')
+
+    def holdUpAStop(self):
         _, started = self.inFlight()
         calling = threading.Thread(target=self.bench['belt_1'].stop, daemon=True)
         calling.start()
         # Long enough for the call to arrive, and shorter than the exchange in flight.
-        time.sleep(0.4 * PATIENCE_OF_THE_LINE)
+        time.sleep(0.3 * PATIENCE_OF_THE_LINE)
         self.bench.driver.signal(signal.SIGSTOP)
         # Until the stop is later than the longest exchange allows.
         time.sleep(max(0.0, started + 2.0 * PATIENCE_OF_THE_LINE - time.monotonic()))
         self.bench.driver.signal(signal.SIGCONT)
         wait_for(lambda: self.bench.real('belt_1')['run_coil'] == '0', 'the stop')
-        wait_for(lambda: [text for text in self.bench.traces() if 'to the wire' in text], 'a flight recorder file')
         calling.join(10.0)
-        wait_for(lambda: self.bench.bus_status.stop_latency_max > PATIENCE_OF_THE_LINE, 'the latency in bus_status')
+        shown = self.bench.bus_status
+        wait_for(lambda: self.bench.bus_status is not shown, 'a new bus_status')
 
 
 if __name__ == '__main__':

@@ -330,6 +330,8 @@ void Checker::onFrame(TimePoint now, const simulation::FrameRecord& frame)
       lanes_[*facts.inverter].heard = frame.bytes;
       lanes_[*facts.inverter].served = ours ? exchange_ : 0;
       noteHeard(now, *facts.inverter);
+      // What it answers is what it has now, not at the end of the exchange.
+      sample(now, *facts.inverter);
       if (facts.reset)
       {
         // It starts anew, and its supervision with it.

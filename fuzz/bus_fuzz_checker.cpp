@@ -141,6 +141,8 @@ void Checker::disturbed(TimePoint now)
 void Checker::lostPower(TimePoint now, std::size_t index)
 {
   Lane& lane = lanes_[index];
+  lane.cut_at = now;
+  lane.latched_at_cut = runLatched(index);
   if (lane.run_answered && runLatched(index))
   {
     lane.power_lost = now;
@@ -379,6 +381,7 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
 {
   Lane& lane = lanes_[index];
   lane.silences = 0;
+  lane.reply_end = frame.time;
   unsigned refusal = 0;
   // Whether it was damaged, its check sum tells: what collided may be the noise before it.
   const bool prompt = in_flight_ && lane.served == exchange_ && facts_.inverter == index;
@@ -467,7 +470,9 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   const bool complete = lane.permit && lane.run_answered && newest && lane.run_reverse == (lane.hertz < 0.0);
   lane.settled = good && (lane.settled || (facts_.commands() && complete));
   const bool told = facts_.reads_frequency && good;
-  lane.shown = told && scene_.inverters[index].brand == Brand::TOSHIBA && runLatched(index);
+  // The supply may have gone after the last byte, before anybody has looked at the reply.
+  const bool latched = lane.cut_at > lane.reply_end ? lane.latched_at_cut : runLatched(index);
+  lane.shown = told && scene_.inverters[index].brand == Brand::TOSHIBA && latched;
 }
 
 /// What each brand is asked for once after it has come, in the lowest class. Wire addresses: A001, A002, C076, C077 of MX2;

@@ -158,6 +158,9 @@ private:
     std::optional<double> set_answered;
     bool shown = false;  ///< the last exchange succeeded and showed RUN in force
     std::optional<TimePoint> power_lost;
+    TimePoint cut_at;             ///< of the supply, the last time
+    bool latched_at_cut = false;  ///< RUN, just before
+    TimePoint reply_end;          ///< on the line, of its last reply
 
     // stops
     std::optional<TimePoint> due;

@@ -13,7 +13,8 @@ namespace fuzz
 namespace
 {
 constexpr std::size_t KEPT_FRAMES = 5000;
-}
+constexpr std::size_t MOST_IDLE_STEPS = 1000;
+}  // namespace
 
 wire::OpenResult WatchedPort::open(std::string& error)
 {
@@ -131,9 +132,16 @@ void World::pass(Duration duration)
 bool World::runUntil(Duration limit, const std::function<bool()>& condition)
 {
   const TimePoint end = clock_.now() + limit;
+  std::size_t idle_steps = 0;
   while (clock_.now() < end)
   {
+    const TimePoint before = clock_.now();
     const TimePoint wake = loop_.step();
+    idle_steps = clock_.now() == before && wake <= before ? idle_steps + 1 : 0;
+    if (idle_steps > MOST_IDLE_STEPS)
+    {
+      throw Violation(before, "liveness", "the bus thread spins: it neither sends nor waits");
+    }
     deliver();
     checker_.stepped(clock_.now());
     if (condition())

@@ -259,24 +259,24 @@ Duration Scene::gap() const
   return compoway ? seconds(0.002) : (baud_rate > 19200 ? seconds(0.00175) : seconds(3.5 * character));
 }
 
-Duration Scene::longestExchange() const
+double Scene::longestSilence() const
 {
   double longest = 0.0;
   for (const InverterFacts& facts : inverters)
   {
     longest = std::max(longest, facts.response_timeout + facts.own_delay);
   }
-  return 3 * gap() + seconds(longest + PROFILE_DELAY_S + REPLY_SLACK_S + LONGEST_FRAMES * character);
+  return longest;
+}
+
+Duration Scene::longestExchange() const
+{
+  return 3 * gap() + seconds(longestSilence() + PROFILE_DELAY_S + REPLY_SLACK_S + LONGEST_FRAMES * character);
 }
 
 Duration Scene::longestProbe() const
 {
-  double longest = 0.0;
-  for (const InverterFacts& facts : inverters)
-  {
-    longest = std::max(longest, facts.response_timeout + facts.own_delay);
-  }
-  return 2 * gap() + seconds(longest + PROBE_FRAME * character);
+  return 2 * gap() + seconds(longestSilence() + PROBE_FRAME * character);
 }
 
 const std::vector<std::string>& sceneNames()

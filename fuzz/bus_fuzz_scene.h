@@ -62,6 +62,8 @@ struct Scene
   Duration longestExchange() const;
   /// The longest time that a probe which nobody answers takes.
   Duration longestProbe() const;
+  /// [s] that a request without an answer is waited for at the most.
+  double longestSilence() const;
   /// Silence before a request.
   Duration gap() const;
 };

@@ -59,6 +59,15 @@ drive::Drive mx2WithCoast()
   return shipped("omron_mx2", changes);
 }
 
+/// The same drive without a read that tells RUN.
+drive::Drive thatCannotTellRun(const drive::Drive& drive)
+{
+  drive::Profile profile = drive.profile();
+  profile.status.erase("run_seen");
+  profile.status.erase("running");
+  return drive::Drive(profile);
+}
+
 TEST_F(Mx2Stop, writesRunOffAndThenReadsItBack)
 {
   EXPECT_TRUE(stop_.pending());
@@ -215,10 +224,7 @@ TEST(StopJob, isNotPendingOnADriveWithoutAConfirmedStop)
 
 TEST(StopJob, acknowledgementConfirmsWhereTheDriveCannotTellRun)
 {
-  drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());
-  profile.status.erase("run_seen");
-  profile.status.erase("running");
-  const drive::Drive drive(profile);
+  const drive::Drive drive = thatCannotTellRun(shipped("omron_mx2"));
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
   EXPECT_EQ(exchange(stop, ACKNOWLEDGED), Progress::Confirmed);
@@ -226,10 +232,7 @@ TEST(StopJob, acknowledgementConfirmsWhereTheDriveCannotTellRun)
 
 TEST(StopJob, acknowledgementThatMayBeAnotherRequestsConfirmsNothingWhereTheDriveCannotTellRun)
 {
-  drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());
-  profile.status.erase("run_seen");
-  profile.status.erase("running");
-  const drive::Drive drive(profile);
+  const drive::Drive drive = thatCannotTellRun(shipped("omron_mx2"));
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
   EXPECT_FALSE(stop.wantsClearLine()) << "the first frame of a stop waits for nothing";
@@ -242,10 +245,7 @@ TEST(StopJob, acknowledgementThatMayBeAnotherRequestsConfirmsNothingWhereTheDriv
 
 TEST(StopJob, aLoopBackAndAWriteTakeTurnsUntilTheLineIsClear)
 {
-  drive::Profile profile = drive::loadProfile("omron_mx2", drive::profileDirectory());
-  profile.status.erase("run_seen");
-  profile.status.erase("running");
-  const drive::Drive drive(profile);
+  const drive::Drive drive = thatCannotTellRun(shipped("omron_mx2"));
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
   stop.sent(at(1));
@@ -257,13 +257,7 @@ TEST(StopJob, aLoopBackAndAWriteTakeTurnsUntilTheLineIsClear)
 
 TEST(StopJob, anUpgradeWaitsForNoClearLine)
 {
-  drive::ProfileChanges changes;
-  changes.overrides_yaml = "{points: {free_run: {coil: 0x0009}}, sequences: {coast: [{free_run: 1}, {run: 0}]}}";
-  const drive::Drive full = shipped("omron_mx2", changes);
-  drive::Profile profile = full.profile();
-  profile.status.erase("run_seen");
-  profile.status.erase("running");
-  const drive::Drive drive(profile);
+  const drive::Drive drive = thatCannotTellRun(mx2WithCoast());
   StopJob stop(drive, 1);
   stop.request(at(0), StopMode::Decelerate);
   stop.sent(at(1));

@@ -387,7 +387,10 @@ TEST_F(TcpPortTest, connectsToIpv6)
   const Server server(AF_INET6);
   if (!server.there())
   {
-    GTEST_SKIP() << "this machine has no IPv6 loop-back address";
+    // Without IPv6 it is the way to fail that can be seen.
+    EXPECT_NE(OpenResult::Opened, makePort("::1", 1)->open(error_));
+    EXPECT_NE("", error_);
+    return;
   }
   const auto port = makePort("::1", server.port());
   EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;

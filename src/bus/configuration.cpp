@@ -28,6 +28,9 @@ const std::vector<std::string> BUS_KEYS{ "port",
                                          "rs485",
                                          "interval",
                                          "response_timeout",
+                                         "gateway_timeout",
+                                         "pause_in_reply",
+                                         "limit",
                                          "retries",
                                          "offline_after",
                                          "exclusive",
@@ -125,6 +128,14 @@ wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
   return serial;
 }
 
+/// May be raised above what the port itself needs, up to the response_timeout.
+void readPauseInReply(const Section& section, BusConfig& bus)
+{
+  const double least = toSeconds(makeTiming(bus).patience(0.0));
+  const double most = std::max(least, bus.response_timeout);
+  bus.pause_in_reply = section.number("pause_in_reply", Range{ least, most, false, "s (response_timeout)" });
+}
+
 BusConfig readBus(const Section& section)
 {
   BusConfig bus;
@@ -132,6 +143,8 @@ BusConfig readBus(const Section& section)
   bus.protocol = readProtocol(section, bus);
   bus.interval = section.number("interval", bus.interval, Range{ 0.0, 655.35, false, "s" });
   bus.response_timeout = section.number("response_timeout", bus.response_timeout, Range{ 0.0, 10.0, true, "s" });
+  bus.gateway_timeout = section.number("gateway_timeout", bus.gateway_timeout, Range{ 0.0, 60.0, true, "s" });
+  bus.limit = readLimit(section, bus.limit);
   bus.retries = static_cast<int>(section.integer("retries", bus.retries, 0, 10));
   bus.offline_after = static_cast<int>(section.integer("offline_after", bus.offline_after, 1, 100));
   bus.exclusive = section.boolean("exclusive", bus.exclusive);
@@ -141,6 +154,7 @@ BusConfig readBus(const Section& section)
       section.choice("parameter_access", "read_write", { "read_write", "read_only" }) == "read_only";
   bus.trace_directory = section.text("trace_directory", bus.trace_directory);
   bus.serial = readSerial(section, bus);
+  readPauseInReply(section, bus);
   return bus;
 }
 

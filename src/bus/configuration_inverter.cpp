@@ -182,8 +182,34 @@ std::vector<int> readBlock(const Section& entry, const std::vector<int>& fallbac
   return codes;
 }
 
-void readOptions(const Section& entry, InverterConfig& config)
+std::vector<std::string> readSkip(const Section& entry)
 {
+  const char* const allowed = "a list of status fields";
+  const Value* value = entry.find("skip");
+  if (value == nullptr || value->type == Value::Type::None)
+  {
+    return {};
+  }
+  if (value->type != Value::Type::List)
+  {
+    entry.fail("skip", "is no list", allowed);
+  }
+  std::vector<std::string> fields;
+  for (const Value& field : value->list)
+  {
+    if (field.type != Value::Type::Text)
+    {
+      entry.fail("skip", "holds something else than names", allowed);
+    }
+    fields.push_back(field.text);
+  }
+  return fields;
+}
+
+void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& config)
+{
+  config.limit = readLimit(entry, bus.limit);
+  config.skip = readSkip(entry);
   config.rated_current = entry.number("rated_current", Range{ 0.0, 10000.0, true, "A" });
   config.rated_voltage = entry.number("rated_voltage", Range{ 0.0, 10000.0, true, "V" });
   config.configure_block = entry.boolean("configure_block", config.configure_block);
@@ -235,7 +261,7 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   checkProtocolKeys(entry, profile, bus);
   readVelocities(entry, profile, config);
   readTimes(entry, profile, bus, config);
-  readOptions(entry, config);
+  readOptions(entry, bus, config);
   return ConfiguredInverter{ std::move(config), std::move(drive) };
 }
 }  // namespace bus

@@ -25,7 +25,7 @@ std::vector<std::string> sharedKeys()
   return { "drive",           "hz_per_unit",      "max_velocity",           "min_velocity",
            "command_timeout", "response_timeout", "rated_current",          "rated_voltage",
            "configure_block", "block_read",       "stop_unexpected_motion", "release_on_exit",
-           "overrides",       "confirm" };
+           "overrides",       "confirm",          "limit",                  "skip" };
 }
 
 std::vector<std::string> entryKeys()

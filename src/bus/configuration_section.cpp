@@ -251,6 +251,12 @@ std::int64_t Section::choice(const std::string& key, std::int64_t fallback,
   return value->integer;
 }
 
+Limit readLimit(const Section& section, Limit fallback)
+{
+  const std::string inherited = fallback == Limit::Saturate ? "saturate" : "refuse";
+  return section.choice("limit", inherited, { "refuse", "saturate" }) == "saturate" ? Limit::Saturate : Limit::Refuse;
+}
+
 void Section::require(const std::string& key, const std::string& allowed) const
 {
   if (!has(key))

@@ -31,6 +31,11 @@ std::string describe(const Value& value);
 /// \p names as "a, b, c".
 std::string join(const std::vector<std::string>& names);
 
+class Section;
+
+/// Key `limit` of the bus or of an entry.
+Limit readLimit(const Section& section, Limit fallback);
+
 /// A map of the configuration that is being judged. Every getter throws drive::ConfigurationError with one line that
 /// names place, key, value and what is allowed.
 class Section

@@ -44,6 +44,13 @@ struct Value
 /// A scan list file as a tree. \throws drive::ConfigurationError with file and line.
 Value readYamlFile(const std::string& path);
 
+/// What happens to a velocity beyond the maximum (contract, 8.5).
+enum class Limit
+{
+  Refuse,
+  Saturate
+};
+
 /// One inverter of the scan list. Times in seconds, velocities in the user's unit.
 struct InverterConfig
 {
@@ -61,6 +68,9 @@ struct InverterConfig
   std::vector<int> block_read{ 1, 2, 3, 4, 14 };
   bool stop_unexpected_motion = false;
   bool release_on_exit = false;
+  Limit limit = Limit::Refuse;  ///< resolved: entry, bus
+  /// Status fields that are left out: not read, NaN, and their unconfirmed items are not reported.
+  std::vector<std::string> skip;
   drive::ProfileChanges changes;
 };
 
@@ -77,6 +87,10 @@ struct BusConfig
   bool modbus_tcp = false;
   double interval = 0.0;  ///< [s] 0-655.35
   double response_timeout = 0.1;
+  double gateway_timeout = 3.0;  ///< [s] tcp://: after that a gateway has given up a request that it left unanswered
+  /// [s] longest pause inside a reply; resolved by makeTiming() where it is not given.
+  std::optional<double> pause_in_reply;
+  Limit limit = Limit::Refuse;
   int retries = 1;
   int offline_after = 3;
   bool exclusive = true;

@@ -128,6 +128,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
   interlock.offline();
+  stop.forgetConfirmation();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -739,6 +740,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();
+  view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = refresh_not_before;
   view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now && setting_not_before <= now;
   view.serve_by = serveBy(deadline_margin);

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+// Coincidences that far seeds of bus_fuzz met, each told again on a small bus in virtual time.
+
+#include "virtual_bus.h"
+
+namespace inverter_bus
+{
+namespace
+{
+const char* const MIXER_AND_BELTS = R"(
+port: /dev/virtual
+baud_rate: 9600
+parity: even
+scan_list:
+  - name: mixer
+    node: 1
+    drive: teco_7200ma
+    confirm: [run_forward, fault_reset, frequency_scale, monitor_layout, fault_coding]
+    overrides: {reverse_word: 2, monitor_base: 0x0020}
+  - {name: belt_1, node: 2, drive: omron_mx2}
+  - {name: belt_2, node: 3, drive: omron_mx2}
+)";
+
+const char* const THREE_MIXERS = R"(
+port: /dev/virtual
+baud_rate: 9600
+parity: even
+defaults:
+  drive: teco_7200ma
+  confirm: [run_forward, fault_reset, frequency_scale, monitor_layout, fault_coding]
+  overrides: {reverse_word: 2, monitor_base: 0x0020}
+scan_list:
+  - {name: mixer_1, node: 1}
+  - {name: mixer_2, node: 2}
+  - {name: mixer_3, node: 3}
+)";
+
+/// Somebody calls a stop again and again: of one inverter, or of all.
+void flood(VirtualBus& bus, std::optional<std::size_t> index, double period, double duration)
+{
+  for (double time = 0.0; time < duration; time += period)
+  {
+    bus.at(time, [&bus, index] { bus.stop(index); });
+  }
+}
+
+// Seed 7002317.
+TEST(Coincidences, whoStopsAgainAndAgainDuringTheShutdownKeepsNoOtherMotorRunning)
+{
+  VirtualBus bus(MIXER_AND_BELTS);
+  bus.settleIn();
+  for (std::size_t index = 0; index < 3; ++index)
+  {
+    bus.stream(index, 20.0, 0.1, 10.0);
+  }
+  bus.run(3.0);
+  ASSERT_EQ(bus.motor("belt_2", "run_coil"), 1);
+  bus.coordinator().beginShutdown(bus.now());
+  flood(bus, 0, 0.001, 3.0);
+  // The flood never ends; the node's own bound ends the shutdown.
+  bus.runUntil(5.0, [&] { return bus.coordinator().shutdownDone(bus.now()); });
+  EXPECT_EQ(bus.motor("belt_1", "run_coil"), 0);
+  EXPECT_EQ(bus.motor("belt_2", "run_coil"), 0);
+  for (const std::string& text : bus.coordinator().endShutdown())
+  {
+    EXPECT_EQ(text.compare(0, 5, "mixer"), 0) << text;
+  }
+}
+
+TEST(Coincidences, whoStopsAllAgainAndAgainBlindsTheDriverNotAndGetsHisAnswers)
+{
+  VirtualBus bus(THREE_MIXERS);
+  bus.settleIn();
+  for (std::size_t index = 0; index < 3; ++index)
+  {
+    bus.stream(index, 20.0, 0.1, 1.5);
+  }
+  bus.run(1.5);
+  flood(bus, std::nullopt, 0.005, 8.0);
+  const auto answer = bus.wait(bus.stop(std::nullopt), 5.0);
+  EXPECT_TRUE(answer.success) << answer.message;
+  bus.run(3.0);
+  for (std::size_t index = 0; index < 3; ++index)
+  {
+    EXPECT_GT(bus.status(index).stamp, bus.now() - seconds(2.0)) << index;
+  }
+}
+}  // namespace
+}  // namespace inverter_bus

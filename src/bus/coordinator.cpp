@@ -71,7 +71,8 @@ void Coordinator::watchDeadMen(TimePoint now)
 {
   for (const auto& inverter : inverters_)
   {
-    if (inverter->interlock.deadManDue(now) && !inverter->stop.pending())
+    // A stop that locks nothing (a 0, a RUN that got lost) may be pending: silence locks all the same.
+    if (inverter->interlock.deadManDue(now) && !inverter->interlock.stopPending())
     {
       requestStop(now, *inverter, StopMode::Decelerate, true,
                   "no command for " + std::to_string(inverter->config.command_timeout) + " s (command_timeout)");

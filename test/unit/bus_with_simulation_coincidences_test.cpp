@@ -87,5 +87,28 @@ TEST(Coincidences, whoStopsAllAgainAndAgainBlindsTheDriverNotAndGetsHisAnswers)
     EXPECT_GT(bus.status(index).stamp, bus.now() - seconds(2.0)) << index;
   }
 }
+// Seed 7000622.
+TEST(Coincidences, theDeadManLocksAlthoughTheStopOfALostRunIsUnderWay)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+retries: 0
+response_timeout: 0.25
+scan_list:
+  - {name: belt, node: 1, drive: omron_mx2, command_timeout: 0.3}
+)");
+  bus.settleIn();
+  EXPECT_EQ(bus.command(0, 20.0), 0);
+  ASSERT_TRUE(bus.runUntil(1.0, [&] { return bus.count("01 05 00 01") > 0; }));
+  // Direction is confirmed: RUN is next.
+  bus.world("belt lost_reply count 1");
+  // The RUN is given up after 0.3 s without a reply, and by then no command has come for as long.
+  EXPECT_TRUE(bus.runUntil(1.0, [&] { return bus.count("01 05 00 00 00 00") > 0; }));
+  bus.runUntil(1.0, [&] { return bus.hasStatus(0) && !bus.status(0).stop_active; });
+  bus.run(0.1);
+  EXPECT_EQ(bus.motor("belt", "run_coil"), 0);
+  EXPECT_EQ(bus.command(0, 20.0), bus::ERROR_LOCKED) << "who was silent for too long must return to neutral";
+  EXPECT_TRUE(bus.status(0).locked);
+}
 }  // namespace
 }  // namespace inverter_bus

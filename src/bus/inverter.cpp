@@ -106,7 +106,9 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id)
     return false;
   }
   exchange_error_ = error_id;
-  if (++failures_ < offline_after_ || offline_)
+  // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
+  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
+  if (patience || offline_)
   {
     return false;
   }

@@ -28,7 +28,7 @@ Scheduler::Scheduler(const Settings& settings)
   : settings_(settings)
   , stop_pending_(settings.inverters, false)
   , last_stop_exchange_(settings.inverters, 0)
-  , silent_at_deadline_(settings.inverters, false)
+  , silent_at_deadline_(settings.inverters, 0)
 {
 }
 
@@ -343,7 +343,8 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
 
 std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
 {
-  // One that did not answer when its time came lets the others go before it is tried again.
+  // One that did not answer when its time came lets the others go before it is tried again; several such take turns, since
+  // the time of one that never answers never moves.
   const auto key = [&](std::size_t index) {
     return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by);
   };
@@ -524,7 +525,7 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
         refreshed_in_cycle_ = true;
         cursor_ += more ? 0 : 1;
       }
-      silent_at_deadline_[pick.inverter] = !answered;
+      silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
       // A repeat has no right to the next exchange: another drive's time may come meanwhile.
       noteHalfRefresh(pick, more && answered);
       break;

@@ -110,5 +110,30 @@ scan_list:
   EXPECT_EQ(bus.command(0, 20.0), bus::ERROR_LOCKED) << "who was silent for too long must return to neutral";
   EXPECT_TRUE(bus.status(0).locked);
 }
+// Seeds 8003100 and 10006396.
+TEST(Coincidences, aDriveThatCameBackForOneReplyCostsNoMoreThanOneThatIsOffline)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+retries: 3
+offline_after: 8
+scan_list:
+  - {name: belt_1, node: 1, drive: omron_mx2}
+  - {name: belt_2, node: 2, drive: omron_mx2}
+)");
+  bus.settleIn();
+  bus.world("belt_2 offline");
+  ASSERT_TRUE(bus.runUntil(20.0, [&] { return bus.status(1).communication_error; }));
+  bus.world("belt_2 online");
+  // It answers once, and is away again before anybody has read its status.
+  ASSERT_TRUE(bus.runUntil(5.0, [&] { return bus.frames().back().drive == "belt_2"; }));
+  bus.world("belt_2 offline");
+  bus.run(0.6);
+  bus.clearFrames();
+  bus.run(10.0);
+  // 0.1 s of silence each: 5 % of the time are five of them.
+  EXPECT_LE(bus.count("02"), 8U);
+  EXPECT_TRUE(bus.status(1).communication_error);
+}
 }  // namespace
 }  // namespace inverter_bus

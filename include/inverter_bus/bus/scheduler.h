@@ -182,8 +182,8 @@ private:
   // stops
   std::vector<bool> stop_pending_;
   std::vector<std::uint64_t> last_stop_exchange_;
-  /// Its last refresh was not answered.
-  std::vector<bool> silent_at_deadline_;
+  /// The exchange in which its refresh was not answered last; 0: it has answered since.
+  std::vector<std::uint64_t> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
   /// Frames of stops since the last exchange that took nothing from a stop.
   unsigned stops_in_a_row_ = 0;

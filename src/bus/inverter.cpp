@@ -264,9 +264,15 @@ void Inverter::noteExchange(wire::Outcome outcome)
     return;
   }
   run_proven_ = false;
-  if (outcome != wire::Outcome::Exception && drive.wears("frequency"))
+  if (outcome == wire::Outcome::Exception)
   {
-    // A short power cut may be behind it, after which the drive writes set-points to its EEPROM again.
+    return;
+  }
+  // A short power cut may be behind it.
+  refresh.suspectRestart();
+  if (drive.wears("frequency"))
+  {
+    // After one the drive writes set-points to its EEPROM again.
     settings.connectAgain();
   }
 }
@@ -400,7 +406,7 @@ Judgement Inverter::judge(TimePoint now)
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
-  judgeRestart(monitor, judgement);
+  judgeRestart(monitor, refresh.freshSentAt(), judgement);
   compareMovement(now, monitor);
   if (movement.runConfirmed() && now - command_source_at_ >= seconds(COMMAND_SOURCE_PERIOD_S))
   {
@@ -413,14 +419,27 @@ Judgement Inverter::judge(TimePoint now)
 }
 
 /// The drive says that it has forgotten what it was told since its last return.
-void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
+void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
 {
-  if (!monitor.restarted.value_or(false) || !settings.connected())
+  if (!monitor.restarted || !settings.connected())
   {
     return;
   }
-  settings.restart();
+  if (!*monitor.restarted)
+  {
+    no_restart_until_ = sent_at;
+    return;
+  }
   refresh.restartNoted();
+  if (movement.runConfirmed() && no_restart_until_ < movement.runChangedAt() && !stop.pending())
+  {
+    // It may have restarted before it got the RUN that is in force. If that is gone, the next read shows it.
+    settings.connectAgain();
+    refresh.askForRun();
+    run_proven_ = false;
+    return;
+  }
+  settings.restart();
   // What was selected for its block read may count only now.
   block_note_.clear();
   refresh.useBlock(std::nullopt);
@@ -443,7 +462,7 @@ Judgement Inverter::judgeWords(TimePoint now)
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
-  judgeRestart(words, judgement);
+  judgeRestart(words, refresh.wordsSentAt(), judgement);
   return judgement;
 }
 

@@ -46,6 +46,14 @@ void flood(VirtualBus& bus, std::optional<std::size_t> index, double period, dou
   }
 }
 
+/// It starts anew and is deaf for a second, however short the cut.
+void switchOffAndOn(VirtualBus& bus, const std::string& name)
+{
+  bus.world(name + " power off");
+  bus.at(0.02, [&bus, name] { bus.world(name + " power on"); });
+  bus.run(0.03);
+}
+
 // Seed 7002317.
 TEST(Coincidences, whoStopsAgainAndAgainDuringTheShutdownKeepsNoOtherMotorRunning)
 {
@@ -134,6 +142,73 @@ scan_list:
   // 0.1 s of silence each: 5 % of the time are five of them.
   EXPECT_LE(bus.count("02"), 8U);
   EXPECT_TRUE(bus.status(1).communication_error);
+}
+// Seeds 10000411, 10000930 and 10009227.
+TEST(Coincidences, aRestartAtRestIsNoticedAsSoonAsTheDriveAnswersAgain)
+{
+  // Whichever read is lost while the drive is deaf, that of the restart's marker among them.
+  for (double phase = 0.0; phase < 2.5; phase += 0.1)
+  {
+    VirtualBus bus(R"(
+port: /dev/virtual
+baud_rate: 9600
+parity: even
+interval: 0.15
+offline_after: 20
+scan_list:
+  - {name: pump, node: 1, drive: toshiba_vfs15}
+)");
+    bus.settleIn();
+    bus.run(phase);
+    switchOffAndOn(bus, "pump");
+    ASSERT_EQ(bus.motor("pump", "reset_marker"), 0.0);
+    // Deaf for 1.02 s; a marker that was lost itself is asked for again after 0.5 s.
+    EXPECT_TRUE(bus.runUntil(2.5, [&] { return bus.motor("pump", "reset_marker") == 1.0; })) << phase;
+  }
+}
+
+TEST(Coincidences, aRestartBeforeTheRunThatIsInForceStopsNothing)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+parity: even
+interval: 1.4
+scan_list:
+  - {name: pump, node: 1, drive: toshiba_vfs15}
+)");
+  bus.settleIn(60.0);
+  // Switched off and on between two refreshes: nothing gets lost, and its marker is read many refreshes later.
+  const std::size_t replies = bus.frames().size();
+  ASSERT_TRUE(bus.runUntil(5.0, [&] { return bus.frames().size() > replies; }));
+  bus.run(0.1);
+  switchOffAndOn(bus, "pump");
+  bus.run(1.1);
+  bus.stream(0, 20.0, 0.1, 30.0);
+  bus.run(29.0);
+  EXPECT_EQ(bus.motor("pump", "reset_marker"), 1.0);
+  EXPECT_EQ(bus.motor("pump", "run_command"), 1.0);
+  EXPECT_FALSE(bus.status(0).locked);
+}
+
+TEST(Coincidences, aRestartAfterTheRunIsFoundOutByTheRunThatIsGone)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+parity: even
+interval: 1.4
+scan_list:
+  - {name: pump, node: 1, drive: toshiba_vfs15}
+)");
+  bus.settleIn(60.0);
+  bus.stream(0, 20.0, 0.1, 60.0);
+  bus.run(4.0);
+  ASSERT_EQ(bus.motor("pump", "run_command"), 1.0);
+  switchOffAndOn(bus, "pump");
+  bus.clearFrames();
+  bus.run(20.0);
+  EXPECT_EQ(bus.motor("pump", "run_command"), 0.0);
+  EXPECT_EQ(bus.count("01 06 FA 00 C4 00"), 0U);
+  EXPECT_TRUE(bus.status(0).locked);
 }
 }  // namespace
 }  // namespace inverter_bus

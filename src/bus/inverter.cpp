@@ -106,7 +106,9 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id)
     return false;
   }
   exchange_error_ = error_id;
-  if (++failures_ < offline_after_ || offline_)
+  // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
+  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
+  if (patience || offline_)
   {
     return false;
   }
@@ -128,6 +130,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
   interlock.offline();
+  stop.forgetConfirmation();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -266,9 +269,15 @@ void Inverter::noteExchange(wire::Outcome outcome)
     return;
   }
   run_proven_ = false;
-  if (outcome != wire::Outcome::Exception && drive.wears("frequency"))
+  if (outcome == wire::Outcome::Exception)
   {
-    // A short power cut may be behind it, after which the drive writes set-points to its EEPROM again.
+    return;
+  }
+  // A short power cut may be behind it.
+  refresh.suspectRestart();
+  if (drive.wears("frequency"))
+  {
+    // After one the drive writes set-points to its EEPROM again.
     settings.connectAgain();
   }
 }
@@ -403,7 +412,7 @@ Judgement Inverter::judge(TimePoint now)
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
-  judgeRestart(monitor, judgement);
+  judgeRestart(monitor, refresh.freshSentAt(), judgement);
   compareMovement(now, monitor);
   if (movement.runConfirmed() && now - command_source_at_ >= seconds(COMMAND_SOURCE_PERIOD_S))
   {
@@ -416,14 +425,27 @@ Judgement Inverter::judge(TimePoint now)
 }
 
 /// The drive says that it has forgotten what it was told since its last return.
-void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
+void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
 {
-  if (!monitor.restarted.value_or(false) || !settings.connected())
+  if (!monitor.restarted || !settings.connected())
   {
     return;
   }
-  settings.restart();
+  if (!*monitor.restarted)
+  {
+    no_restart_until_ = sent_at;
+    return;
+  }
   refresh.restartNoted();
+  if (movement.runConfirmed() && no_restart_until_ < movement.runChangedAt() && !stop.pending())
+  {
+    // It may have restarted before it got the RUN that is in force. If that is gone, the next read shows it.
+    settings.connectAgain();
+    refresh.askForRun();
+    run_proven_ = false;
+    return;
+  }
+  settings.restart();
   // What was selected for its block read may count only now.
   block_note_.clear();
   refresh.useBlock(std::nullopt);
@@ -446,7 +468,7 @@ Judgement Inverter::judgeWords(TimePoint now)
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
-  judgeRestart(words, judgement);
+  judgeRestart(words, refresh.wordsSentAt(), judgement);
   return judgement;
 }
 
@@ -745,6 +767,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();
+  view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = refresh_not_before;
   view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now && setting_not_before <= now;
   view.serve_by = serveBy(deadline_margin);

@@ -648,6 +648,10 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
          " after its request; a response_timeout above that "
          "would have caught it");
   }
+  for (const std::string& mistake : drive.profile().mistakes)
+  {
+    warn("left out: " + mistake);
+  }
   if (!drive.profile().unconfirmed.empty())
   {
     warn("unconfirmed in the profile: " + drive.unconfirmedText());

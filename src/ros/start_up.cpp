@@ -73,6 +73,10 @@ std::string inverterLine(const bus::InverterConfig& config)
   {
     line << ", confirmed: " << name;
   }
+  for (const std::string& field : config.skip)
+  {
+    line << ", skipped: " << field;
+  }
   return line.str();
 }
 }  // namespace

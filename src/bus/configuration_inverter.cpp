@@ -179,7 +179,7 @@ double readHzPerUnit(const Section& entry)
   if (std::abs(hz_per_unit) < SMALLEST)
   {
     entry.fail("hz_per_unit", hz_per_unit == 0.0 ? "is 0" : "is too small",
-               "a number from 1e-06 to 1e+06 Hz per unit, negative where the drive is mounted mirrored, never 0");
+               "a number from 0.000001 to 1000000 Hz per unit, negative where the drive is mounted mirrored, never 0");
   }
   return hz_per_unit;
 }

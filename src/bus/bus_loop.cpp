@@ -43,6 +43,12 @@ TimePoint BusLoop::openPort()
   std::string error;
   const wire::OpenResult result = line_.open(error);
   const std::lock_guard<std::mutex> guard(mutex_);
+  if (result == wire::OpenResult::Pending)
+  {
+    next_open_ = now;
+    coordinator_.tick(clock_.now());
+    return now;
+  }
   if (result == wire::OpenResult::Opened)
   {
     ever_opened_ = true;

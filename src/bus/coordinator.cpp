@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "inverter_bus/wire/shown_number.h"
+
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
 
@@ -90,7 +92,7 @@ void Coordinator::watchDeadMen(TimePoint now)
     if (inverter->interlock.deadManDue(now) && !inverter->interlock.stopPending())
     {
       requestStop(now, *inverter, StopMode::Decelerate, true,
-                  "no command for " + std::to_string(inverter->config.command_timeout) + " s (command_timeout)");
+                  "no command for " + wire::shownNumber(inverter->config.command_timeout) + " s (command_timeout)");
     }
   }
 }
@@ -640,7 +642,7 @@ void Coordinator::noteStopLatency(Duration latency)
   const Duration in_gateway = worstStop() - budget_.worst_stop - longestReplyDelay();
   if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64) + in_gateway)
   {
-    outputs_.traces.push_back("stop took " + std::to_string(toSeconds(latency)) + " s to the wire");
+    outputs_.traces.push_back("stop took " + wire::shownDuration(latency) + " to the wire");
   }
 }
 }  // namespace bus

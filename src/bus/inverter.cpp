@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -34,14 +35,6 @@ std::string listed(const std::vector<int>& codes)
     text += (text.empty() ? "" : ", ") + std::to_string(code);
   }
   return text;
-}
-
-std::string milliseconds(Duration duration)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << toSeconds(duration) * 1e3 << " ms";
-  return text.str();
 }
 
 std::string hex(std::uint16_t value)
@@ -672,9 +665,13 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + milliseconds(latest_late_reply_) +
+    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
          " after its request; a response_timeout above that "
          "would have caught it");
+  }
+  for (const std::string& mistake : drive.profile().mistakes)
+  {
+    warn("left out: " + mistake);
   }
   if (!drive.profile().unconfirmed.empty())
   {
@@ -731,11 +728,11 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("drive", drive.profile().name);
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? milliseconds(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", milliseconds(slowest_reply_));
+                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", milliseconds(settings.replyDelay()));
+  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));

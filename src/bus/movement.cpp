@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -27,12 +28,6 @@ JudgedVelocity refused(std::uint16_t error_id, const std::string& text)
   return judged;
 }
 
-std::string number(double value)
-{
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 }  // namespace
 
 Movement::Movement(const drive::Drive& drive, const InverterConfig& config) : drive_(drive), config_(config)
@@ -53,7 +48,7 @@ JudgedVelocity Movement::judge(double velocity) const
 {
   if (!std::isfinite(velocity))
   {
-    return refused(ERROR_OUT_OF_RANGE, "velocity " + number(velocity) + " is not a finite number");
+    return refused(ERROR_OUT_OF_RANGE, "velocity " + wire::shownNumber(velocity) + " is not a finite number");
   }
   JudgedVelocity judged;
   judged.target.velocity = velocity;
@@ -65,17 +60,18 @@ JudgedVelocity Movement::judge(double velocity) const
   const double magnitude = std::fabs(velocity);
   if (magnitude > config_.max_velocity || magnitude < config_.min_velocity)
   {
-    return refused(ERROR_OUT_OF_RANGE, "velocity " + number(velocity) + " is out of range: 0, or " +
-                                           number(config_.min_velocity) + " to " + number(config_.max_velocity) +
-                                           " in either direction");
+    return refused(ERROR_OUT_OF_RANGE, "velocity " + wire::shownNumber(velocity) + " is out of range: 0, or " +
+                                           wire::shownNumber(config_.min_velocity) + " to " +
+                                           wire::shownNumber(config_.max_velocity) + " in either direction");
   }
   const double frequency = velocity * config_.hz_per_unit;
   judged.target.counts = drive_.frequencyCounts(std::fabs(frequency));
   judged.target.reverse = frequency < 0.0;
   if (judged.target.counts == 0)
   {
-    return refused(ERROR_OUT_OF_RANGE, "velocity " + number(velocity) + " rounds to 0 Hz; the drive's step is " +
-                                           number(drive_.frequencyResolution()) + " Hz");
+    return refused(ERROR_OUT_OF_RANGE, "velocity " + wire::shownNumber(velocity) +
+                                           " rounds to 0 Hz; the drive's step is " +
+                                           wire::shownNumber(drive_.frequencyResolution()) + " Hz");
   }
   const std::string& name = judged.target.reverse ? REVERSE : FORWARD;
   if (drive_.sequence(name) == nullptr)

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "inverter_bus/bus/number_text.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -230,7 +232,7 @@ std::vector<Finding> Budget::findings() const
     const InverterConfig& config = configuration_.bus.inverters[index];
     if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
     {
-      findings.push_back({ Level::Warn, config.name + ": command_timeout " + std::to_string(config.command_timeout) +
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + numberText(config.command_timeout) +
                                             " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
     }
     const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "inverter_bus/bus/number_text.h"
+
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
 
@@ -36,7 +38,10 @@ bool goesBefore(const StopJob& stop, const StopJob& other)
 }  // namespace
 
 Coordinator::Coordinator(const Configuration& configuration, const wire::Line& line)
-  : configuration_(configuration), line_(line), budget_(Budget(configuration, line).figures())
+  : configuration_(configuration)
+  , line_(line)
+  , budget_(Budget(configuration, line).figures())
+  , refusals_(configuration.bus.inverters.size())
 {
   for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
   {
@@ -61,6 +66,10 @@ Coordinator::~Coordinator() = default;
 void Coordinator::tick(TimePoint now)
 {
   watchDeadMen(now);
+  for (const std::string& line : refusals_.takeLines(now))
+  {
+    log(Level::Warn, line);
+  }
   expireJobs(now);
   finishStopCalls(now);
   publishSlowly(now);
@@ -73,7 +82,7 @@ void Coordinator::watchDeadMen(TimePoint now)
     if (inverter->interlock.deadManDue(now) && !inverter->stop.pending())
     {
       requestStop(now, *inverter, StopMode::Decelerate, true,
-                  "no command for " + std::to_string(inverter->config.command_timeout) + " s (command_timeout)");
+                  refusals_.deadManReason(inverter->index, inverter->config.command_timeout));
     }
   }
 }
@@ -579,7 +588,7 @@ void Coordinator::noteStopLatency(Duration latency)
   stop_latency_max_ = std::max(stop_latency_max_, latency);
   if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64))
   {
-    outputs_.traces.push_back("stop took " + std::to_string(toSeconds(latency)) + " s to the wire");
+    outputs_.traces.push_back("stop took " + numberText(toSeconds(latency)) + " s to the wire");
   }
 }
 }  // namespace bus

@@ -645,7 +645,9 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
   {
     return;
   }
-  if (!inverter.interlock.isFaulted() && inverter.drive.reports("faulted"))
+  const drive::Monitor& told = inverter.refresh.fresh();
+  // Not told, or told in a word that nobody knows: what can't be ruled out is reset.
+  if (!inverter.interlock.isFaulted() && !told.tripped().value_or(true))
   {
     Answer nothing;
     nothing.success = true;
@@ -658,8 +660,8 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
   {
     requestStop(now, inverter, StopMode::Decelerate, true, "");
   }
-  startJob(now, index, std::make_unique<ResetJob>(inverter.drive, inverter.config.node), bounds().reset,
-           std::move(callback));
+  startJob(now, index, std::make_unique<ResetJob>(inverter.drive, inverter.config.node, told.unknown_trip),
+           bounds().reset, std::move(callback));
 }
 
 void Coordinator::readFaults(TimePoint now, std::size_t index, AnswerCallback callback)

@@ -55,6 +55,7 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   , gateway_({ configuration.bus.modbus_tcp, seconds(configuration.bus.gateway_timeout),
                longestResponseTimeout(configuration.bus) })
   , link_(longestResponseTimeout(configuration.bus))
+  , refusals_(configuration.bus.inverters.size())
 {
   for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
   {
@@ -79,6 +80,10 @@ Coordinator::~Coordinator() = default;
 void Coordinator::tick(TimePoint now)
 {
   watchDeadMen(now);
+  for (const std::string& line : refusals_.takeLines(now))
+  {
+    log(Level::Warn, line);
+  }
   expireJobs(now);
   finishStopCalls(now);
   publishSlowly(now);
@@ -92,7 +97,7 @@ void Coordinator::watchDeadMen(TimePoint now)
     if (inverter->interlock.deadManDue(now) && !inverter->interlock.stopPending())
     {
       requestStop(now, *inverter, StopMode::Decelerate, true,
-                  "no command for " + wire::shownNumber(inverter->config.command_timeout) + " s (command_timeout)");
+                  refusals_.deadManReason(inverter->index, inverter->config.command_timeout));
     }
   }
 }

@@ -391,16 +391,14 @@ Judgement Inverter::judge(TimePoint now)
   ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
-  const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
+  const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
   const bool new_trip = faulted && !interlock.isFaulted();
   judgement.tripped = new_trip || early_trip_;
   early_trip_ = false;
   interlock.faulted(faulted);
   if (judgement.tripped)
   {
-    const std::uint16_t code = monitor.fault_code.value_or(0);
-    judgement.trip_text =
-        "trip " + std::to_string(code) + ": " + (code == 0 ? std::string("no reason given") : drive.faultText(code));
+    judgement.trip_text = drive.tripText(monitor);
     judgement.stop_reason = new_trip ? judgement.trip_text : std::string();
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
@@ -453,11 +451,11 @@ Judgement Inverter::judgeWords(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& words = refresh.words();
-  if (words.faulted.value_or(false) && !interlock.isFaulted())
+  if (words.tripped().value_or(false) && !interlock.isFaulted())
   {
     interlock.faulted(true);
     early_trip_ = true;
-    judgement.stop_reason = "the drive has tripped";
+    judgement.stop_reason = words.unknown_trip ? drive.tripText(words) : "the drive has tripped";
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
@@ -624,9 +622,11 @@ std::vector<Finding> Inverter::errors() const
   }
   if (interlock.isFaulted())
   {
-    const std::uint16_t code = refresh.fresh().fault_code.value_or(0);
-    findings.push_back({ Level::Error, "tripped: " + std::to_string(code) + " " + drive.faultText(code) +
-                                           "; remove the cause, then call reset" });
+    const drive::Monitor& told = refresh.fresh();
+    const std::uint16_t code = told.fault_code.value_or(0);
+    const std::string why =
+        told.unknown_trip ? drive.tripText(told) : std::to_string(code) + " " + drive.faultText(code);
+    findings.push_back({ Level::Error, "tripped: " + why + "; remove the cause, then call reset" });
   }
   return findings;
 }
@@ -760,7 +760,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
-                 !monitor.faulted.value_or(false);
+                 !monitor.tripped().value_or(false);
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();

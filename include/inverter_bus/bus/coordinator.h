@@ -18,6 +18,7 @@
 #include "inverter_bus/bus/jobs.h"
 #include "inverter_bus/bus/link_watch.h"
 #include "inverter_bus/bus/load_meter.h"
+#include "inverter_bus/bus/refusal_log.h"
 #include "inverter_bus/bus/scheduler.h"
 
 namespace inverter_bus
@@ -48,6 +49,8 @@ public:
 
   // --- requests of users --------------------------------------------------------------------------------------------
   std::uint16_t command(TimePoint now, const VelocityCommand& command);
+  /// \p velocity takes the RUN of this inverter off: 0, or near it. Depends on the configuration alone; any thread.
+  bool stops(std::size_t index, double velocity) const;
   /// A malformed command: shows in the status of \p indices and, for a group, in the bus status.
   void refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text,
               bool group);
@@ -166,6 +169,7 @@ private:
   // velocity
   std::uint16_t judgeGroup(TimePoint now, const VelocityCommand& command, std::vector<JudgedVelocity>& judged,
                            bool& repeat);
+  double factorOf(const VelocityCommand& command) const;
   std::uint16_t judgeOne(TimePoint now, std::size_t index, const Publisher& publisher, JudgedVelocity& judged) const;
   void applyVelocities(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
                        bool refused);
@@ -174,7 +178,8 @@ private:
 
   void noteGroupError(TimePoint now, std::uint16_t error_id);
   void clearGroupError(TimePoint now, bool by_group);
-  void logGroupRefusal(TimePoint now, const std::string& text);
+  void tellRefusal(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
+                   std::uint16_t error_id);
 
   // stops
   void requestStop(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
@@ -304,8 +309,7 @@ private:
   std::uint16_t last_error_ = 0;
   std::uint16_t group_error_ = 0;
   TimePoint group_error_at_;
-  std::optional<TimePoint> group_logged_at_;
-  std::size_t groups_not_logged_ = 0;
+  RefusalLog refusals_;
   std::uint8_t last_node_ = 0;
   wire::LineCounters counters_;
   bool echo_found_ = false;

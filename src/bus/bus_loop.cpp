@@ -12,7 +12,9 @@ namespace
 {
 // An adapter that is plugged in again is found within this time.
 constexpr double OPEN_PERIOD_S = 0.2;
-constexpr double IN_USE_PATIENCE_S = 15.0;
+// Every try moves the RTS line of whoever has the port.
+constexpr double IN_USE_PERIOD_S = 1.0;
+constexpr double IN_USE_PATIENCE_S = 30.0;
 }  // namespace
 
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
@@ -33,15 +35,18 @@ void BusLoop::close()
 TimePoint BusLoop::openPort()
 {
   const TimePoint now = clock_.now();
+  // Statuses go on at their pace, however seldom the port is tried.
+  const TimePoint tick = now + seconds(OPEN_PERIOD_S);
   if (now < next_open_)
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     coordinator_.tick(now);
-    return next_open_;
+    return std::min(next_open_, tick);
   }
-  next_open_ = now + seconds(OPEN_PERIOD_S);
   std::string error;
   const wire::OpenResult result = line_.open(error);
+  const bool in_use = result == wire::OpenResult::InUse;
+  next_open_ = now + seconds(in_use ? IN_USE_PERIOD_S : OPEN_PERIOD_S);
   const std::lock_guard<std::mutex> guard(mutex_);
   if (result == wire::OpenResult::Opened)
   {
@@ -49,16 +54,22 @@ TimePoint BusLoop::openPort()
     coordinator_.portOpened(clock_.now());
     return now;
   }
-  coordinator_.portMissing(now, error, result == wire::OpenResult::InUse);
+  coordinator_.portMissing(now, error, in_use);
   coordinator_.tick(now);
-  if (result != wire::OpenResult::InUse || ever_opened_)
+  judgePatience(now, in_use);
+  return std::min(next_open_, tick);
+}
+
+/// A port that was never ours may stay somebody else's; one that was will come back.
+void BusLoop::judgePatience(TimePoint now, bool in_use)
+{
+  if (!in_use || ever_opened_)
   {
     in_use_since_.reset();
-    return next_open_;
+    return;
   }
   in_use_since_ = in_use_since_ ? in_use_since_ : std::optional<TimePoint>(now);
   given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
-  return next_open_;
 }
 
 /// One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.

@@ -22,12 +22,13 @@ public:
 
   /// One round, at most one exchange. Returns the time of the next round at the latest; in the past: at once.
   TimePoint step();
-  /// The port was in use by another process from the start, for 15 s.
+  /// The port was in use by another process from the start, for 30 s.
   bool portInUse() const;
   void close();
 
 private:
   TimePoint openPort();
+  void judgePatience(TimePoint now, bool in_use);
   void lose();
 
   Coordinator& coordinator_;

@@ -48,6 +48,12 @@ TimePoint BusLoop::openPort()
   const bool in_use = result == wire::OpenResult::InUse;
   next_open_ = now + seconds(in_use ? IN_USE_PERIOD_S : OPEN_PERIOD_S);
   const std::lock_guard<std::mutex> guard(mutex_);
+  if (result == wire::OpenResult::Pending)
+  {
+    next_open_ = now;
+    coordinator_.tick(clock_.now());
+    return now;
+  }
   if (result == wire::OpenResult::Opened)
   {
     ever_opened_ = true;

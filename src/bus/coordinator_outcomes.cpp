@@ -495,13 +495,18 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
     {
       continue;
     }
-    inverter->lateReply(late.delay);
+    if (!late.delay)
+    {
+      // A gateway has given it up, or it is not clear what it answers.
+      continue;
+    }
+    inverter->lateReply(*late.delay);
     if (inverter->offline())
     {
       wire::Reply sign_of_life;
       sign_of_life.outcome = wire::Outcome::Ok;
       sign_of_life.finished_at = now;
-      sign_of_life.turnaround = std::min(late.delay, seconds(inverter->config.response_timeout));
+      sign_of_life.turnaround = std::min(*late.delay, seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
       log(Level::Ok, inverter->config.name + ": online (its reply came late)");
     }

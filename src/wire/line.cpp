@@ -13,7 +13,8 @@ namespace wire
 {
 namespace
 {
-/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter).
+/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter, or the
+/// pause that is allowed for if that is longer).
 constexpr double REPLY_SLACK_CHARACTERS = 16.0;
 constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
 }  // namespace
@@ -248,7 +249,8 @@ Line::Waiting Line::startWaiting(const Request& request, TimePoint sent_at)
     waiting.reply_length = protocol_.replyLength(request);
     const double characters = static_cast<double>(waiting.reply_length) + REPLY_SLACK_CHARACTERS;
     waiting.first_byte_deadline += heldBack(request) + request.reply_delay + request.response_timeout;
-    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + REPLY_SLACK;
+    const Duration slack = std::max<Duration>(REPLY_SLACK, patience());
+    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + slack;
   }
   return waiting;
 }
@@ -283,7 +285,7 @@ TimePoint Line::waitUntil(const Waiting& waiting) const
   {
     return waiting.first_byte_deadline;
   }
-  const TimePoint rest = last_byte_at_ + timing_.patience(protocol_.gapCharacters());
+  const TimePoint rest = last_byte_at_ + patience();
   // A reply that broke off or was damaged will not come again; a few stray bytes say nothing about the reply yet.
   const bool echo_begun = !buffer_.empty() && echo_.holds(buffer_);
   const bool reply_was_here =

@@ -53,7 +53,7 @@ bool Line::settle(Duration quiet)
   {
     // The rest of a late reply that an adapter delivers in pieces must not run into the next exchange.
     const bool half_a_frame = buffer_.size() >= LIKELY_FRAME && !isSurplus();
-    const TimePoint rest = half_a_frame ? last_byte_at_ + timing_.patience(protocol_.gapCharacters()) : ready_at_;
+    const TimePoint rest = half_a_frame ? last_byte_at_ + patience() : ready_at_;
     result = receive(std::min(std::max(quiet_at(), rest), give_up));
     consumeIdle();
     result = result == ReceiveResult::Data && clock_.now() >= give_up ? ReceiveResult::Silence : result;

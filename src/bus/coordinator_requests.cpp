@@ -105,6 +105,10 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     }
   }
   judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
+  if (judged.error_id == ERROR_OFFLINE)
+  {
+    judged.text += ": " + inverter.offlineReason();
+  }
   return judged.error_id;
 }
 
@@ -558,7 +562,8 @@ bool Coordinator::refuseJob(std::size_t index, const AnswerCallback& callback)
   if (inverter.offline() || !inverter.known())
   {
     refuseCall(callback, ERROR_OFFLINE,
-               inverter.offline() ? errorText(ERROR_OFFLINE) : "the inverter has not answered yet");
+               inverter.offline() ? errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason()
+                                  : "the inverter has not answered yet");
     return true;
   }
   return false;

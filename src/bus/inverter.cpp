@@ -26,6 +26,8 @@ constexpr double DEVIATION_PATIENCE_S = 2.0;
 constexpr double RUN_EVIDENCE_S = 0.5;
 constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
+// 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
+constexpr double MOST_PAID_FOR_DATA_S = 0.135;
 
 std::string listed(const std::vector<int>& codes)
 {
@@ -70,84 +72,162 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , refresh(drive, config.node)
   , settings(drive, config.node)
   , lost_writes(retries, offline_after)
-  , offline_after_(offline_after)
+  , liveness(offline_after)
 {
 }
 
 // --- link ------------------------------------------------------------------------------------------------------------
 
-bool Inverter::answered(const wire::Reply& reply)
+void Inverter::answered(const wire::Reply& reply)
 {
-  const bool back = offline_ || !ever_answered_;
   last_reply_ = reply.finished_at;
   ever_answered_ = true;
-  failures_ = 0;
-  read_failed_ = false;
-  exchange_error_ = 0;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
   probes = 0;
   if (offline_)
   {
-    offline_ = false;
-    loopback.tryAgain();
-    ++returns_;
+    probed_ = false;
+    on_trial_ = true;
+    return;
   }
-  return back;
+  exchange_error_ = 0;
+}
+
+void Inverter::beginTrial(Duration delay)
+{
+  if (silent() && probed_)
+  {
+    slowest_reply_ = std::max(slowest_reply_, std::min(delay, seconds(config.response_timeout)));
+    on_trial_ = true;
+    probed_ = false;
+    // That probe is paid for.
+    trial_cost_ = Duration::zero();
+    trial_waste_ = Duration::zero();
+  }
+}
+
+bool Inverter::onTrial() const
+{
+  return on_trial_;
+}
+
+Duration Inverter::endTrial()
+{
+  on_trial_ = false;
+  refresh_tries = 0;
+  settings_tries = 0;
+  forgetDrive();
+  // What was lost or refused is paid for in full, what brought something as far as it does not delay the next probe for long.
+  return std::max(trial_waste_, std::min(trial_cost_, seconds(MOST_PAID_FOR_DATA_S)));
+}
+
+bool Inverter::silent() const
+{
+  return offline_ && !on_trial_;
+}
+
+void Inverter::noteCost(bool probe, wire::Outcome outcome, Duration cost)
+{
+  probed_ = probed_ || (offline_ && probe);
+  const bool wasted = outcome != wire::Outcome::Ok;
+  trial_cost_ = (on_trial_ ? trial_cost_ : Duration::zero()) + cost;
+  trial_waste_ = (on_trial_ ? trial_waste_ : Duration::zero()) + (wasted ? cost : Duration::zero());
 }
 
 bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
-  if (now < silence_until_)
+  if (now < silence_until_ || offline_)
   {
     return false;
   }
   exchange_error_ = error_id;
-  read_failed_ = read_failed_ || !write;
-  // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
-  if (patience || offline_)
+  if (liveness.lost(write))
   {
-    return false;
+    goOffline(error_id);
   }
-  goOffline(error_id);
-  return true;
+  return offline_;
+}
+
+bool Inverter::refusedStatus(std::uint16_t error_id)
+{
+  if (!offline_ && liveness.refused())
+  {
+    goOffline(error_id);
+    return true;
+  }
+  return false;
+}
+
+bool Inverter::overdue(TimePoint now, Duration period) const
+{
+  return !offline_ && liveness.overdue(now, period);
+}
+
+std::string Inverter::offlineReason() const
+{
+  const std::string why = exchange_error_ == wire::ERROR_PORT_LOST ? "" : liveness.reason();
+  return why.empty() ? errorText(exchange_error_) : why;
 }
 
 void Inverter::goOffline(std::uint16_t error_id)
 {
   offline_ = true;
+  on_trial_ = false;
+  probed_ = false;
   known_ = false;
+  exchange_error_ = error_id;
+  if (command_error_ == ERROR_LOCKED || command_error_ == ERROR_CANCELLED)
+  {
+    // That it is away says more.
+    acceptCommand();
+  }
+  velocityConfirmed();
+  interlock.offline();
+  stop.forgetConfirmation();
+  movement.drop();
+  unexpected_motion_ = false;
+  reset_active = false;
+  // From now on nothing of it is answered, and that is what users are told.
+  lost_writes.lower();
+  forgetDrive();
+}
+
+/// Another drive may stand there now, or the same one may have been switched off and on.
+void Inverter::forgetDrive()
+{
   leftover_judged_ = false;
   early_trip_ = false;
-  exchange_error_ = error_id;
   run_shown_at_.reset();
   run_proven_ = false;
   setup_open = false;
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  interlock.offline();
-  stop.forgetConfirmation();
-  movement.drop();
   movement.forgetWords();
   refresh.forget();
   settings.restart();
   operation_seen_ = false;
   operation_off_since_.reset();
-  unexpected_motion_ = false;
-  reset_active = false;
-  // From now on nothing of it is answered, and that is what users are told.
-  lost_writes.lower();
+}
+
+/// A complete status has come.
+void Inverter::noteBack()
+{
+  if (offline_)
+  {
+    offline_ = false;
+    on_trial_ = false;
+    exchange_error_ = 0;
+    loopback.tryAgain();
+    ++returns_;
+  }
+  known_ = true;
+  ever_known_ = true;
 }
 
 bool Inverter::offline() const
 {
   return offline_;
-}
-
-bool Inverter::needsRead() const
-{
-  return !offline_ && failures_ >= offline_after_ && !read_failed_;
 }
 
 bool Inverter::known() const
@@ -160,14 +240,10 @@ bool Inverter::everKnown() const
   return ever_known_;
 }
 
-bool Inverter::unreadSinceReturn() const
-{
-  return !offline_ && !known_ && returns_ > 0;
-}
-
 void Inverter::expectSilence(TimePoint until)
 {
   silence_until_ = until;
+  liveness.watchFrom(until);
 }
 
 wire::Request Inverter::prepared(wire::Request request) const
@@ -182,7 +258,7 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 bool Inverter::connectDue(TimePoint now) const
 {
-  return !offline_ && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
+  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)
@@ -398,8 +474,8 @@ Judgement Inverter::judge(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
-  known_ = true;
-  ever_known_ = true;
+  noteBack();
+  liveness.complete(now);
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
   const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
@@ -585,7 +661,7 @@ InverterStatus Inverter::status(TimePoint now) const
   status.model = settings.model();
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
-  status.communication_error = offline_ || unreadSinceReturn();
+  status.communication_error = offline_;
   if (!status.communication_error)
   {
     status.monitor = refresh.monitor(now);
@@ -622,7 +698,7 @@ void Inverter::showError(InverterStatus& status) const
   else if (exchange_error_ != 0)
   {
     status.error_id = exchange_error_;
-    status.error_text = errorText(exchange_error_);
+    status.error_text = offline_ ? offlineReason() : errorText(exchange_error_);
   }
 }
 
@@ -660,7 +736,7 @@ std::vector<Finding> Inverter::errors() const
   std::vector<Finding> findings;
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + offlineReason() +
                                            "); check supply, wiring, station number and serial settings" });
     return findings;
   }
@@ -808,7 +884,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 {
   InverterView view;
   const drive::Monitor& monitor = refresh.fresh();
-  view.offline = offline_;
+  view.offline = silent();
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&

@@ -733,7 +733,8 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
 
 void Scheduler::chargeProbe(TimePoint now, Duration cost)
 {
-  next_probe_ = now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
+  next_probe_ =
+      std::max(next_probe_, now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0)));
 }
 
 void Scheduler::doneCommand(const Pick& pick, bool more)

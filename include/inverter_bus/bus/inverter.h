@@ -12,6 +12,7 @@
 
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/liveness.h"
 #include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
@@ -98,24 +99,38 @@ public:
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
   LostWrites lost_writes;
+  Liveness liveness;
 
   // --- link -------------------------------------------------------------------------------------------------------
-  /// A valid reply came. Returns true if the inverter was offline or unknown before.
-  bool answered(const wire::Reply& reply);
+  /// A valid reply came, of whatever kind. It makes an offline inverter worth a trial, and no more: it is back with a complete
+  /// status only (contract, 8.15).
+  void answered(const wire::Reply& reply);
+  /// A reply to a probe came late, \p delay after its request: worth a trial, too.
+  void beginTrial(Duration delay);
+  /// Offline, but it answers: its settings and its status are being read, at the probes' cost if that leads to nothing.
+  bool onTrial() const;
+  /// The trial has led to nothing. Returns what it has cost.
+  Duration endTrial();
+  /// Offline, and it is not even known to answer.
+  bool silent() const;
+  /// An exchange with it has ended (bookkeeping of probes and trials).
+  void noteCost(bool probe, wire::Outcome outcome, Duration cost);
   /// An exchange failed after its repeats. Returns true if the inverter has just gone offline. Lost writes of command words
   /// alone don't take it offline (contract, 8.1): a read must have been lost among them.
   bool failed(TimePoint now, std::uint16_t error_id, bool write = false);
+  /// The run words were refused. Returns true if the inverter has just gone offline.
+  bool refusedStatus(std::uint16_t error_id);
+  /// No complete status has come for too long (contract, 8.15); \p period of its refreshes.
+  bool overdue(TimePoint now, Duration period) const;
   /// The port is gone, or the inverter is given up: offline at once.
   void goOffline(std::uint16_t error_id);
+  /// Why it is offline, in words.
+  std::string offlineReason() const;
   bool offline() const;
-  /// Only writes were lost, and so many that a read has to tell whether the drive is away.
-  bool needsRead() const;
   /// A complete status has come since start or return.
   bool known() const;
   /// A complete status has come since the node was started.
   bool everKnown() const;
-  /// It answers again, but no complete status has come yet: to users it is still away.
-  bool unreadSinceReturn() const;
   /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
   std::optional<TimePoint> serveBy(Duration deadline_margin) const;
   /// All reads that a refresh may be made of.
@@ -191,6 +206,8 @@ public:
   unsigned probes = 0;
 
 private:
+  void forgetDrive();
+  void noteBack();
   void showError(InverterStatus& status) const;
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
@@ -203,12 +220,15 @@ private:
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
   std::vector<Finding> errors() const;
 
-  int offline_after_;
   bool known_ = false;  ///< a complete status has come since start or return
   bool ever_known_ = false;
   bool offline_ = false;
-  int failures_ = 0;
-  bool read_failed_ = false;  ///< among these failures
+  bool on_trial_ = false;
+  /// What the trial has cost since the probe that began it, and how much of that was lost or refused.
+  Duration trial_cost_{ 0 };
+  Duration trial_waste_{ 0 };
+  /// Since the last trial, and nobody has answered it yet.
+  bool probed_ = false;
   std::uint16_t exchange_error_ = 0;
   std::uint16_t command_error_ = 0;
   std::string command_error_text_;

@@ -389,7 +389,7 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
   {
     // A stop is exempt from rule 3.9: the late reply to its first frame may stand for the second one.
     const bool of_stop = lane.served != 0 && readRequest(scene_, lane.heard).stop;
-    if (of_stop && readReply(scene_, lane.heard, frame.bytes, refusal) == ReplyKind::NORMAL)
+    if (of_stop && readNoisyReply(lane.heard, frame.bytes, refusal) == ReplyKind::NORMAL)
     {
       lane.stop_replied = now;
       lane.needs_stop_reply = lane.needs_stop_reply && lane.stop_sent < lane.locked_at;
@@ -397,18 +397,25 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
     }
     return;
   }
-  ReplyKind kind = readReply(scene_, request_, frame.bytes, refusal);
-  // Noise may stand before it.
-  for (std::size_t skipped = 1; kind == ReplyKind::OTHER && skipped <= LONGEST_NOISE && skipped < frame.bytes.size();
-       ++skipped)
-  {
-    const simulation::Bytes rest(frame.bytes.begin() + static_cast<std::ptrdiff_t>(skipped), frame.bytes.end());
-    kind = readReply(scene_, request_, rest, refusal);
-  }
+  const ReplyKind kind = readNoisyReply(request_, frame.bytes, refusal);
   if (kind != ReplyKind::OTHER)
   {
     notePromptReply(now, index, kind, refusal);
   }
+}
+
+/// Noise may stand before it.
+ReplyKind Checker::readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply,
+                                  unsigned& refusal) const
+{
+  ReplyKind kind = readReply(scene_, request, reply, refusal);
+  for (std::size_t skipped = 1; kind == ReplyKind::OTHER && skipped <= LONGEST_NOISE && skipped < reply.size();
+       ++skipped)
+  {
+    const simulation::Bytes rest(reply.begin() + static_cast<std::ptrdiff_t>(skipped), reply.end());
+    kind = readReply(scene_, request, rest, refusal);
+  }
+  return kind;
 }
 
 void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal)

@@ -213,6 +213,7 @@ private:
   void checkPatience(TimePoint now);
   void endExchange(TimePoint now);
   void takeReply(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
+  ReplyKind readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply, unsigned& refusal) const;
   void notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal);
   void noteHeard(TimePoint end, std::size_t index);
   void payProbe(TimePoint now, Duration cost);

@@ -198,7 +198,11 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     finishVelocity(current, reply);
     return;
   }
-  inverter.movement.doubtful(current.write);
+  if (!current.resync)
+  {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write);
+  }
   if (repeat(inverter.velocity_tries, reply) && !cancelled)
   {
     finishExchange(current, reply, true);

@@ -27,6 +27,7 @@ constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
 constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
+constexpr double STATUS_WAIT_S = 0.02;
 
 /// At shutdown stops take turns: every one is written before the first of them is read back, so that no motor waits for
 /// another's confirmation; nor for one that somebody asks to be stopped again and again.
@@ -383,6 +384,10 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
     Inverter& inverter = *inverters_[member];
     if (const auto write = nextWrite(now, inverter))
     {
+      if (write->starts && inverter.mustBeSeenRunning())
+      {
+        continue;
+      }
       Current current;
       current.pick = pick;
       current.purpose = Purpose::Velocity;
@@ -393,6 +398,8 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
     }
     scheduler_->eraseVelocity(member);
   }
+  // What is left waits for a status; nothing may be.
+  scheduler_->postpone(pick.command, now + seconds(STATUS_WAIT_S));
   return std::nullopt;
 }
 

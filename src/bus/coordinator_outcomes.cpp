@@ -201,7 +201,7 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   if (!current.resync)
   {
     // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
-    inverter.movement.doubtful(current.write);
+    inverter.movement.doubtful(current.write, now);
   }
   if (repeat(inverter.velocity_tries, reply) && !cancelled)
   {

@@ -239,5 +239,42 @@ scan_list:
   EXPECT_EQ(bus.count("01 05 00 00 FF 00"), 0U) << "RUN was in force all the time";
   EXPECT_EQ(bus.motor("belt", "reference"), 10.0);
 }
+// Seeds 10003524 and 10004636.
+TEST(Coincidences, aPowerCutWhileItIsToTurnRoundStartsNoMotor)
+{
+  for (const char* duration : { "0.05", "0.1", "0.3" })
+  {
+    VirtualBus bus(MIXER_AND_BELTS);
+    bus.settleIn();
+    bus.stream(0, 20.0, 0.1, 3.0);
+    bus.run(3.0);
+    ASSERT_EQ(bus.motor("mixer", "run_command"), 1.0);
+    bus.clearFrames();
+    bus.stream(0, -20.0, 0.1, 3.0);
+    // The set-point is the same: the first frame is the RUN that turns it round.
+    bus.world(std::string("mixer power_cycle ") + duration);
+    bus.run(3.0);
+    EXPECT_GE(bus.count("01 10 00 00 00 01 02 00 02"), 1U);
+    EXPECT_EQ(bus.motor("mixer", "run_command"), 0.0) << duration;
+    EXPECT_EQ(bus.motor("mixer", "frequency"), 0.0) << duration;
+    EXPECT_TRUE(bus.status(0).locked) << duration;
+  }
+}
+
+TEST(Coincidences, aLostReplyToARunThatTurnsTheMotorRoundIsRepeatedAsEver)
+{
+  for (const char* harm : { "lost_reply", "lost_request" })
+  {
+    VirtualBus bus(MIXER_AND_BELTS);
+    bus.settleIn();
+    bus.stream(0, 20.0, 0.1, 3.0);
+    bus.run(3.0);
+    bus.stream(0, -20.0, 0.1, 3.0);
+    bus.world(std::string("mixer ") + harm + " count 1");
+    bus.run(2.9);
+    EXPECT_EQ(bus.motor("mixer", "target"), -20.0) << harm;
+    EXPECT_FALSE(bus.status(0).locked) << harm;
+  }
+}
 }  // namespace
 }  // namespace inverter_bus

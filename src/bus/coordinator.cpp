@@ -559,6 +559,11 @@ void Coordinator::sent(TimePoint now)
   if (current_->purpose == Purpose::Velocity && !current_->resync)
   {
     inverter.movement.sent(current_->write);
+    if (current_->write.starts)
+    {
+      // The stop that follows is none of a flood.
+      inverter.stop.forgetConfirmation();
+    }
   }
   if (current_->purpose == Purpose::Broadcast)
   {

@@ -202,6 +202,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   sent_at_ = now;
   request_end_ = now + seconds(scene_.character * static_cast<double>(frame.size()));
   in_flight_ = true;
+  answered_before_ = answered_;
   answered_ = false;
   anything_heard_ = false;
   if (!facts_.inverter && !facts_.broadcast)
@@ -210,6 +211,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   }
   watchDeadMen(now);
   checkStopFirst(now);
+  checkTurn(now);
   checkMotion(now);
   checkBackground(now);
   was_probe_ = facts_.inverter && lanes_[*facts_.inverter].heard_of && !lanes_[*facts_.inverter].online;
@@ -429,6 +431,7 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   }
   world_.drives()[index]->advance(now);
   const bool good = kind == ReplyKind::NORMAL;
+  lane.refused_at = good ? lane.refused_at : now;
   if (facts_.reads_frequency && good)
   {
     widen(index);
@@ -594,6 +597,10 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
   const bool was_faulted = lane.heard_of && lane.status.monitor.faulted.value_or(false);
   if (status.communication_error)
   {
+    if (lane.online)
+    {
+      checkWentOffline(now, status.index);
+    }
     if (lane.online || !lane.heard_of)
     {
       probe_allowance_ += 3.0 * toSeconds(scene_.longestExchange());

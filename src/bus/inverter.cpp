@@ -133,8 +133,8 @@ void Inverter::goOffline(std::uint16_t error_id)
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  interlock.offline();
   stop.forgetConfirmation();
+  interlock.offline();
   movement.drop();
   movement.forgetWords();
   refresh.forget();

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -34,14 +35,6 @@ std::string listed(const std::vector<int>& codes)
     text += (text.empty() ? "" : ", ") + std::to_string(code);
   }
   return text;
-}
-
-std::string milliseconds(Duration duration)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << toSeconds(duration) * 1e3 << " ms";
-  return text.str();
 }
 
 std::string hex(std::uint16_t value)
@@ -111,8 +104,8 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
   exchange_error_ = error_id;
   read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
-  if (patience || offline_)
+  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
+  if (patience || !read_failed_ || offline_)
   {
     return false;
   }
@@ -160,6 +153,11 @@ bool Inverter::needsRead() const
 bool Inverter::known() const
 {
   return known_;
+}
+
+bool Inverter::everKnown() const
+{
+  return ever_known_;
 }
 
 bool Inverter::unreadSinceReturn() const
@@ -406,18 +404,17 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
-  const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
+  const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
   const bool new_trip = faulted && !interlock.isFaulted();
   judgement.tripped = new_trip || early_trip_;
   early_trip_ = false;
   interlock.faulted(faulted);
   if (judgement.tripped)
   {
-    const std::uint16_t code = monitor.fault_code.value_or(0);
-    judgement.trip_text =
-        "trip " + std::to_string(code) + ": " + (code == 0 ? std::string("no reason given") : drive.faultText(code));
+    judgement.trip_text = drive.tripText(monitor);
     judgement.stop_reason = new_trip ? judgement.trip_text : std::string();
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
@@ -470,11 +467,11 @@ Judgement Inverter::judgeWords(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& words = refresh.words();
-  if (words.faulted.value_or(false) && !interlock.isFaulted())
+  if (words.tripped().value_or(false) && !interlock.isFaulted())
   {
     interlock.faulted(true);
     early_trip_ = true;
-    judgement.stop_reason = "the drive has tripped";
+    judgement.stop_reason = words.unknown_trip ? drive.tripText(words) : "the drive has tripped";
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
@@ -690,9 +687,11 @@ std::vector<Finding> Inverter::errors() const
   }
   if (interlock.isFaulted())
   {
-    const std::uint16_t code = refresh.fresh().fault_code.value_or(0);
-    findings.push_back({ Level::Error, "tripped: " + std::to_string(code) + " " + drive.faultText(code) +
-                                           "; remove the cause, then call reset" });
+    const drive::Monitor& told = refresh.fresh();
+    const std::uint16_t code = told.fault_code.value_or(0);
+    const std::string why =
+        told.unknown_trip ? drive.tripText(told) : std::to_string(code) + " " + drive.faultText(code);
+    findings.push_back({ Level::Error, "tripped: " + why + "; remove the cause, then call reset" });
   }
   return findings;
 }
@@ -731,9 +730,13 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + milliseconds(latest_late_reply_) +
+    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
          " after its request; a response_timeout above that "
          "would have caught it");
+  }
+  for (const std::string& mistake : drive.profile().mistakes)
+  {
+    warn("left out: " + mistake);
   }
   if (!drive.profile().unconfirmed.empty())
   {
@@ -790,11 +793,11 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("drive", drive.profile().name);
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? milliseconds(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", milliseconds(slowest_reply_));
+                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", milliseconds(settings.replyDelay()));
+  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));
@@ -822,7 +825,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
-                 !monitor.faulted.value_or(false);
+                 !monitor.tripped().value_or(false);
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();

@@ -49,6 +49,7 @@ void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
   take(from.overload_warning, to.overload_warning);
   take(from.pid_deviation, to.pid_deviation);
   take(from.faulted, to.faulted);
+  take(from.unknown_trip, to.unknown_trip);
   take(from.restarted, to.restarted);
   take(from.raw_status, to.raw_status);
   take(from.fault_code, to.fault_code);
@@ -257,7 +258,7 @@ void Refresh::planFaultReads()
 bool Refresh::advance()
 {
   ++position_;
-  if (position_ == plan_.size() && scratch_.faulted.value_or(false) && !fault_planned_)
+  if (position_ == plan_.size() && scratch_.tripped().value_or(false) && !fault_planned_)
   {
     // The reason of a trip belongs into the first status that shows it.
     planFaultReads();
@@ -272,7 +273,7 @@ bool Refresh::advance()
     failed();
     return false;
   }
-  if (!scratch_.faulted.value_or(true) && drive_.reports("fault_code"))
+  if (!scratch_.tripped().value_or(true) && drive_.reports("fault_code"))
   {
     scratch_.fault_code = 0;
   }

@@ -60,6 +60,21 @@ struct InverterView
   std::optional<TimePoint> serve_by;
   /// Single exchanges of long jobs wait (settings to be read).
   bool background = false;
+  /// No frame of its stop before this time: one is in the gateway.
+  TimePoint stop_not_before;
+  /// Its refresh that went in spite of a busy gateway is not answered yet.
+  bool refresh_unanswered = false;
+};
+
+/// What the way to the drives allows at the moment.
+struct Gate
+{
+  /// Only stops, and the refresh that a drive's own time-out needs: a gateway still works on a lost request.
+  bool stops_only = false;
+  /// When that ends.
+  TimePoint until;
+  /// Offline inverters without a pending stop may be probed.
+  bool bare_probes = true;
 };
 
 /// The scheduler's decision.
@@ -137,12 +152,15 @@ public:
 
   // --- decisions ----------------------------------------------------------------------------------------------------
   /// The next exchange, or when to ask again.
-  Pick next(TimePoint now, const std::vector<InverterView>& views);
+  Pick next(TimePoint now, const std::vector<InverterView>& views, const Gate& gate = Gate());
 
   /// Books the end of the exchange that was picked.
   /// \param more Refresh: the inverter's refresh needs another exchange. Command (velocity): its unit goes on.
   /// \param answered a reply came (a probe that is answered costs nothing of the probes' share).
   void done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered);
+
+  /// What a probe of \p start has cost after all, when that shows only later: a gateway that was kept busy by it.
+  void chargeProbe(TimePoint now, Duration cost);
 
   // --- cycle --------------------------------------------------------------------------------------------------------
   /// Complete status cycles so far.
@@ -153,8 +171,8 @@ public:
   bool pauseWasCut() const;
   /// Exchanges so far.
   std::uint64_t exchanges() const;
-  /// The whole bus starts afresh (port opened again).
-  void restartCycle(TimePoint now);
+  /// The whole bus starts afresh (port opened again). \p probes_at_once: what probes have cost before doesn't count.
+  void restartCycle(TimePoint now, bool probes_at_once = true);
 
 private:
   struct Ticket
@@ -172,6 +190,7 @@ private:
   std::optional<Pick> pickDeadline(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickCommand(TimePoint now, bool urgent_only) const;
   std::optional<Pick> pickProbe(TimePoint now, const std::vector<InverterView>& views) const;
+  bool mayProbe(TimePoint now, const InverterView& view, std::size_t index) const;
   std::optional<Pick> pickRefresh(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickPutOff(TimePoint now, const std::vector<InverterView>& views) const;
   std::optional<Pick> pickOfCycle(TimePoint now, const std::vector<InverterView>& views);
@@ -182,6 +201,7 @@ private:
   bool isPutOff(std::size_t inverter) const;
   void closeCycle(TimePoint now);
   Pick choose(TimePoint now, const std::vector<InverterView>& views);
+  Pick chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate);
   std::optional<Pick> chooseBehindStops(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> chooseGoingOn(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> chooseInTurn(TimePoint now, const std::vector<InverterView>& views);
@@ -244,6 +264,9 @@ private:
   // probes
   std::size_t probe_cursor_ = 0;
   TimePoint next_probe_;
+  std::vector<TimePoint> last_probe_;
+  /// Of the gate at hand.
+  bool bare_probes_ = true;
 
   // cycle
   std::size_t cursor_ = 0;

@@ -132,7 +132,8 @@ Duration Budget::longestExchange() const
       longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
-  return longest;
+  // One that breaks off, or pauses, ends a pause later.
+  return longest + line_.patience();
 }
 
 Duration Budget::worstStop() const

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "inverter_bus/bus/own_exceptions.h"
 #include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
@@ -69,6 +70,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , refresh(drive, config.node)
   , settings(drive, config.node)
   , offline_after_(offline_after)
+  , exchanges_without_data_(offline_after)
 {
 }
 
@@ -164,6 +166,10 @@ wire::Request Inverter::prepared(wire::Request request) const
   request.response_timeout = seconds(config.response_timeout);
   request.reply_delay = settings.replyDelay();
   request.quiet_before = seconds(drive.profile().quiet_before);
+  if (config.modbus_tcp)
+  {
+    request.own_exceptions = ownExceptions(drive.profile().exceptions, exchanges_without_data_ < offline_after_);
+  }
   return request;
 }
 
@@ -254,8 +260,11 @@ void Inverter::dropBlock(const std::string& why)
   refresh.useBlock(std::nullopt);
 }
 
-void Inverter::noteExchange(wire::Outcome outcome)
+void Inverter::noteExchange(const wire::Reply& reply)
 {
+  const wire::Outcome outcome = reply.outcome;
+  gateway_code_ = reply.gateway_code;
+  exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
   run_shown_at_.reset();
   if (outcome == wire::Outcome::Ok)
   {
@@ -297,6 +306,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     return;
   }
+  exchanges_without_data_ = 0;
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
     block_note_ = "it is selected but not in effect, or the drive refuses it";
@@ -587,7 +597,7 @@ InverterStatus Inverter::status(TimePoint now) const
   status.error_id = command_error_ != 0 ? command_error_ : exchange_error_;
   if (status.error_id != 0)
   {
-    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_);
+    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_, gateway_code_);
   }
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
@@ -616,7 +626,8 @@ std::vector<Finding> Inverter::errors() const
   std::vector<Finding> findings;
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " +
+                                           errorText(exchange_error_, gateway_code_) +
                                            "); check supply, wiring, station number and serial settings" });
     return findings;
   }

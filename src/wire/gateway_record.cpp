@@ -341,7 +341,7 @@ std::string GatewayRecord::quirk() const
   unit(UnitHabit::Zero, "unit 0");
   unit(UnitHabit::One, "unit 1");
   unit(UnitHabit::Last, "unit 255");
-  return text.empty() ? text : "the gateway's replies bear " + text + " instead of what was asked";
+  return text.empty() ? text : "its replies bear " + text + " instead of what was asked";
 }
 
 std::string GatewayRecord::mustReopen(TimePoint now) const
@@ -353,7 +353,7 @@ std::string GatewayRecord::mustReopen(TimePoint now) const
   const bool overdue = std::any_of(owed_.begin(), owed_.end(), [this, now](const Asked& owed) {
     return !owed.silent && owed.request_end + timeout_ <= now;
   });
-  return quirky_ && overdue ? "a request was not answered, and " + quirk() : "";
+  return quirky_ && overdue ? "a request to the gateway was not answered, and " + quirk() : "";
 }
 
 void GatewayRecord::forgetOld(TimePoint now)

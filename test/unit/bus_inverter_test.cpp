@@ -70,7 +70,7 @@ protected:
 
   const InverterConfig config_ = inverterConfig();
   const drive::Drive mx2_ = shipped("omron_mx2");
-  Inverter inverter_{ 0, config_, mx2_, 3 };
+  Inverter inverter_{ 0, config_, mx2_, 3, 1 };
   int time_ = 0;
 };
 
@@ -178,7 +178,7 @@ protected:
 
   const InverterConfig config_ = config();
   drive::Drive mx2_ = shipped("omron_mx2");
-  Inverter inverter_{ 0, config_, mx2_, 3 };
+  Inverter inverter_{ 0, config_, mx2_, 3, 1 };
 };
 
 TEST_F(Mx2BehindAGateway, whatItsProfileListsIsItsOwnAndAllElseTheGateways)
@@ -194,7 +194,7 @@ TEST(Mx2OnAWire, isAskedNothingOfTheKind)
 {
   const InverterConfig config = inverterConfig();
   const drive::Drive mx2 = shipped("omron_mx2");
-  const Inverter inverter(0, config, mx2, 3);
+  const Inverter inverter(0, config, mx2, 3, 1);
   EXPECT_EQ(wire::everyExceptionOfADrive(), inverter.prepared(wire::Request()).own_exceptions);
 }
 
@@ -218,7 +218,7 @@ TEST(Vfs11BehindAGateway, refusesWith04OnlyWhileItSendsData)
   InverterConfig config = inverterConfig();
   config.modbus_tcp = true;
   const drive::Drive vfs11 = shipped("toshiba_vfs11");
-  Inverter inverter(0, config, vfs11, 3);
+  Inverter inverter(0, config, vfs11, 3, 1);
   const auto own = [&inverter] { return inverter.prepared(wire::Request()).own_exceptions[4]; };
   EXPECT_FALSE(own()) << "it has never sent any";
   inverter.refresh.next(at(0));

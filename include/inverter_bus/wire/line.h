@@ -185,6 +185,7 @@ public:
 
 private:
   struct Waiting;
+  TimePoint mayAskAt(const Request& request, TimePoint now) const;
   bool settle(Duration quiet);
   bool send(const Bytes& frame, Reply& reply);
   Waiting startWaiting(const Request& request, TimePoint sent_at);

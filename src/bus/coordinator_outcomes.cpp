@@ -26,7 +26,8 @@ bool alive(const wire::Reply& reply)
 /// Lost or damaged: is it to be repeated?
 bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 {
-  if (alive(reply))
+  // A gateway that says that the drive is silent has tried itself.
+  if (alive(reply) || reply.gateway_code != 0)
   {
     tries = 0;
     return false;
@@ -80,7 +81,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     return;
   }
   Inverter& inverter = *inverters_[current.inverter];
-  inverter.noteExchange(reply.outcome);
+  inverter.noteExchange(reply);
   if (current.request.expects_reply)
   {
     noteLink(reply);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "inverter_bus/bus/own_exceptions.h"
 #include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
@@ -71,6 +72,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , settings(drive, config.node)
   , lost_writes(retries, offline_after)
   , offline_after_(offline_after)
+  , exchanges_without_data_(offline_after)
 {
 }
 
@@ -175,6 +177,10 @@ wire::Request Inverter::prepared(wire::Request request) const
   request.response_timeout = seconds(config.response_timeout);
   request.reply_delay = settings.replyDelay();
   request.quiet_before = seconds(drive.profile().quiet_before);
+  if (config.modbus_tcp)
+  {
+    request.own_exceptions = ownExceptions(drive.profile().exceptions, exchanges_without_data_ < offline_after_);
+  }
   return request;
 }
 
@@ -265,8 +271,11 @@ void Inverter::dropBlock(const std::string& why)
   refresh.useBlock(std::nullopt);
 }
 
-void Inverter::noteExchange(wire::Outcome outcome)
+void Inverter::noteExchange(const wire::Reply& reply)
 {
+  const wire::Outcome outcome = reply.outcome;
+  gateway_code_ = reply.gateway_code;
+  exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
   run_shown_at_.reset();
   if (outcome == wire::Outcome::Ok)
   {
@@ -308,6 +317,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     return;
   }
+  exchanges_without_data_ = 0;
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
     block_note_ = "it is selected but not in effect, or the drive refuses it";
@@ -622,7 +632,7 @@ void Inverter::showError(InverterStatus& status) const
   else if (exchange_error_ != 0)
   {
     status.error_id = exchange_error_;
-    status.error_text = errorText(exchange_error_);
+    status.error_text = errorText(exchange_error_, gateway_code_);
   }
 }
 
@@ -660,7 +670,8 @@ std::vector<Finding> Inverter::errors() const
   std::vector<Finding> findings;
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " +
+                                           errorText(exchange_error_, gateway_code_) +
                                            "); check supply, wiring, station number and serial settings" });
     return findings;
   }

@@ -170,7 +170,7 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
 /// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
 void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
-  if (inverter.failed(now, error_id, true))
+  if (!behind_another_ && inverter.failed(now, error_id, true))
   {
     wentOffline(now, inverter, error_id);
   }
@@ -212,7 +212,14 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   if (reply.connection_closed && !inverter.offline())
   {
     // It counts no try: the same frame goes first over the next connection.
-    noteLost(reply.finished_at, inverter, reply.error_id);
+    if (write)
+    {
+      noteLostWrite(reply.finished_at, inverter, reply.error_id);
+    }
+    else
+    {
+      noteLost(reply.finished_at, inverter, reply.error_id);
+    }
     return;
   }
   if (gateway_.active() && alive(reply))
@@ -250,7 +257,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
   }
-  const bool too_many = write && inverter.lost_writes.lost();
+  const bool too_many = write && !behind_another_ && inverter.lost_writes.lost();
   if (too_many && !inverter.offline())
   {
     writesLost(reply.finished_at, inverter);
@@ -280,7 +287,7 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   inverter.movement.doubtful(current.write);
   const bool lost = !alive(reply);
   // A loop-back that was lost writes nothing.
-  const bool too_many = lost && !current.resync && inverter.lost_writes.lost();
+  const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
   const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
   if (again && !cancelled)
   {

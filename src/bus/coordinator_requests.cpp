@@ -284,8 +284,8 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     inverter.interlock.zeroed(now, publisher);
   }
   inverter.acceptCommand();
-  refusals_.accepted(inverter.index);
   inverter.velocityConfirmed();
+  refusals_.accepted(inverter.index);
   if (inverter.stop.pending())
   {
     return false;

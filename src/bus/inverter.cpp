@@ -106,8 +106,8 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
   exchange_error_ = error_id;
   read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
-  if (patience || !read_failed_ || offline_)
+  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
+  if (patience || offline_)
   {
     return false;
   }

@@ -284,7 +284,11 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     finishVelocity(current, reply);
     return;
   }
-  inverter.movement.doubtful(current.write);
+  if (!current.resync)
+  {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write, now);
+  }
   const bool lost = !alive(reply);
   // A loop-back that was lost writes nothing.
   const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();

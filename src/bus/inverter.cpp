@@ -128,8 +128,8 @@ void Inverter::goOffline(std::uint16_t error_id)
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  interlock.offline();
   stop.forgetConfirmation();
+  interlock.offline();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -359,6 +359,11 @@ bool Inverter::mayRepeatWords(TimePoint now) const
          movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
 }
 
+bool Inverter::mustBeSeenRunning() const
+{
+  return movement.turnLostAt() && (drive.reports("operation") || drive.reports("running"));
+}
+
 bool Inverter::mayRun() const
 {
   const drive::Monitor& monitor = refresh.fresh();
@@ -559,6 +564,14 @@ void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Time
   }
   at_rest_seen_ = false;
   unexpected_motion_ = false;
+  if (movement.turnLostAt() && sent_at > *movement.turnLostAt())
+  {
+    movement.seenRunning();
+    if (!*operation)
+    {
+      judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
+    }
+  }
   operation_seen_ = operation_seen_ || *operation;
   const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&

@@ -146,6 +146,8 @@ public:
   bool mayRepeatWords(TimePoint now) const;
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
+  /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+  bool mustBeSeenRunning() const;
   /// Why the drive gets no command but a stop; empty: it does.
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.

@@ -12,6 +12,8 @@ namespace
 {
 // An adapter that is plugged in again is found within this time.
 constexpr double OPEN_PERIOD_S = 0.2;
+// A connection that its other end has closed is tried again so often, for as long as motors run on.
+constexpr double RESUME_PERIOD_S = 0.05;
 constexpr double IN_USE_PATIENCE_S = 15.0;
 }  // namespace
 
@@ -33,38 +35,79 @@ void BusLoop::close()
 TimePoint BusLoop::openPort()
 {
   const TimePoint now = clock_.now();
-  if (now < next_open_)
+  TimePoint not_before;
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     coordinator_.tick(now);
-    return next_open_;
+    not_before = coordinator_.resuming() ? now : std::max(next_open_, coordinator_.openNotBefore());
   }
-  next_open_ = now + seconds(OPEN_PERIOD_S);
+  if (now < not_before && !opening_)
+  {
+    // Statuses go on meanwhile.
+    return std::min(not_before, now + seconds(OPEN_PERIOD_S));
+  }
+  next_open_ = opening_ ? next_open_ : now + seconds(OPEN_PERIOD_S);
   std::string error;
   const wire::OpenResult result = line_.open(error);
+  opening_ = result == wire::OpenResult::Pending;
   const std::lock_guard<std::mutex> guard(mutex_);
+  return noteOpening(result, error);
+}
+
+TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error)
+{
+  const TimePoint now = clock_.now();
   if (result == wire::OpenResult::Opened)
   {
     ever_opened_ = true;
-    coordinator_.portOpened(clock_.now());
+    coordinator_.portOpened(now);
     return now;
   }
-  coordinator_.portMissing(now, error, result == wire::OpenResult::InUse);
-  coordinator_.tick(now);
-  if (result != wire::OpenResult::InUse || ever_opened_)
+  if (result == wire::OpenResult::Pending)
+  {
+    coordinator_.portPending(now);
+    return now;
+  }
+  const bool in_use = result == wire::OpenResult::InUse;
+  coordinator_.portMissing(now, error, in_use);
+  if (!in_use || ever_opened_)
   {
     in_use_since_.reset();
-    return next_open_;
+    return coordinator_.resuming() ? now + seconds(RESUME_PERIOD_S) : next_open_;
   }
   in_use_since_ = in_use_since_ ? in_use_since_ : std::optional<TimePoint>(now);
   given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
   return next_open_;
 }
 
-/// One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
-void BusLoop::lose()
+/// Reasons of ours to give up an open port and open it anew; true if there was one.
+bool BusLoop::reopen()
 {
-  line_.close();
+  bool abandon = false;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    const TimePoint now = clock_.now();
+    if (coordinator_.telnetOver(now))
+    {
+      coordinator_.closedForTelnet(now);
+      abandon = true;
+    }
+    else if (coordinator_.renewalDue(now))
+    {
+      coordinator_.renewing(now);
+      abandon = true;
+    }
+    else if (!line_.mustReopen().empty())
+    {
+      coordinator_.reopening(now);
+      abandon = true;
+    }
+  }
+  if (abandon)
+  {
+    line_.abandon();
+  }
+  return abandon;
 }
 
 TimePoint BusLoop::step()
@@ -75,6 +118,10 @@ TimePoint BusLoop::step()
   }
   // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
   const bool there = line_.settle();
+  if (there && reopen())
+  {
+    return clock_.now();
+  }
   std::optional<Coordinator::Exchange> exchange;
   TimePoint wake;
   {
@@ -87,7 +134,8 @@ TimePoint BusLoop::step()
     coordinator_.noteLine(now, line_.counters(), line_.echoFound());
     if (!there)
     {
-      coordinator_.portLost(now);
+      coordinator_.portClosed(now);
+      coordinator_.tick(now);
     }
     else if ((exchange = coordinator_.next(now, wake)))
     {
@@ -96,8 +144,8 @@ TimePoint BusLoop::step()
   }
   if (!there)
   {
-    lose();
-    return next_open_;
+    line_.close();
+    return clock_.now();
   }
   if (!exchange)
   {
@@ -111,7 +159,8 @@ TimePoint BusLoop::step()
   }
   if (reply.outcome == wire::Outcome::PortLost)
   {
-    lose();
+    // One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
+    line_.close();
   }
   return clock_.now();
 }

@@ -292,6 +292,11 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     inverter.interlock.resting();
     return false;
   }
+  if (zeroNeedsStop(now, inverter))
+  {
+    requestStop(now, inverter, StopMode::Decelerate, gateway_.motionUntil(now, inverter.index).has_value(), "");
+    return false;
+  }
   inverter.movement.aim(target);
   inverter.velocity_tries = 0;
   return inverter.movement.active();
@@ -506,6 +511,15 @@ ServiceBounds Coordinator::bounds() const
   bounds.read_faults = std::max(bounds.read_faults, 80.0 * exchange);
   bounds.read_parameter = std::max(bounds.read_parameter, 2.0 * exchange * (inverters + 2.0));
   bounds.write_parameter = std::max(bounds.write_parameter, 20.0 * exchange);
+  if (gateway_.active())
+  {
+    // A lost request of somebody else may keep the gateway before the first frame, and one of its own behind it.
+    for (double* bound :
+         { &bounds.stop, &bounds.reset, &bounds.read_faults, &bounds.read_parameter, &bounds.write_parameter })
+    {
+      *bound += 2.0 * configuration_.bus.gateway_timeout;
+    }
+  }
   return bounds;
 }
 

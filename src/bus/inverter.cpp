@@ -148,6 +148,11 @@ bool Inverter::known() const
   return known_;
 }
 
+bool Inverter::everKnown() const
+{
+  return ever_known_;
+}
+
 bool Inverter::unreadSinceReturn() const
 {
   return !offline_ && !known_ && returns_ > 0;
@@ -381,6 +386,7 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
   const bool faulted = monitor.tripped().value_or(interlock.isFaulted());

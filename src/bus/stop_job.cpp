@@ -43,6 +43,8 @@ void StopJob::request(TimePoint now, StopMode mode)
   ++version_;
   requested_at_ = now;
   first_frame_left_ = false;
+  first_frame_answered_ = false;
+  provisional_ = false;
   last_error_ = 0;
 }
 
@@ -73,6 +75,7 @@ wire::Request StopJob::next() const
 std::optional<Duration> StopJob::sent(TimePoint now)
 {
   version_on_wire_ = version_;
+  provisional_ = false;
   if (first_frame_left_)
   {
     return std::nullopt;
@@ -146,6 +149,28 @@ void StopJob::writeAgain()
   fail(wire::ERROR_TIMEOUT);
 }
 
+void StopJob::writeOnceMore()
+{
+  step_ = 0;
+  acknowledged_in_doubt_ = false;
+  provisional_ = true;
+}
+
+bool StopJob::provisional() const
+{
+  return provisional_;
+}
+
+std::optional<Duration> StopJob::answered(TimePoint now)
+{
+  if (!first_frame_left_ || first_frame_answered_)
+  {
+    return std::nullopt;
+  }
+  first_frame_answered_ = true;
+  return now - requested_at_;
+}
+
 bool StopJob::wantsClearLine() const
 {
   return wants_clear_line_;
@@ -158,6 +183,7 @@ void StopJob::confirm()
   attempts_ = 0;
   acknowledged_in_doubt_ = false;
   wants_clear_line_ = false;
+  provisional_ = false;
 }
 
 void StopJob::cancel()

@@ -19,7 +19,14 @@ constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
 /// Station and function: from here on something is likelier to be a frame than noise.
 constexpr std::size_t LIKELY_FRAME = 2;
 
-Outcome outcomeOf(const Parsed& answer)
+/// The code of a Modbus exception by which a gateway says that the drive has not answered; 0: it is none.
+std::uint8_t gatewayCode(const Parsed& answer, const ExceptionCodes& own)
+{
+  const bool modbus_exception = answer.pdu.size() == 2 && (answer.pdu[0] & 0x80) != 0;
+  return modbus_exception && !own[answer.pdu[1]] ? answer.pdu[1] : std::uint8_t{ 0 };
+}
+
+Outcome outcomeOf(const Parsed& answer, std::uint8_t gateway_code)
 {
   switch (answer.kind)
   {
@@ -28,7 +35,7 @@ Outcome outcomeOf(const Parsed& answer)
     case Parsed::Kind::NotUnderstood:
       return Outcome::Damaged;
     default:
-      return answer.error_id == ERROR_TIMEOUT ? Outcome::Timeout : Outcome::Exception;
+      return gateway_code != 0 ? Outcome::Timeout : Outcome::Exception;
   }
 }
 }  // namespace
@@ -72,12 +79,18 @@ void Line::setFrameObserver(FrameObserver observer)
 
 OpenResult Line::open(std::string& error)
 {
+  const OpenResult result = port_.open(error);
+  if (result != OpenResult::Opened)
+  {
+    return result;
+  }
   buffer_.clear();
   damaged_.clear();
   bars_.clear();
   echo_.forget();
   silent_request_.reset();
-  const OpenResult result = port_.open(error);
+  last_loss_ = Loss::None;
+  proven_ = false;
   // Somebody else's frame may have been under way.
   last_use_at_ = clock_.now();
   ready_at_ = last_use_at_ + gap();
@@ -87,6 +100,11 @@ OpenResult Line::open(std::string& error)
 void Line::close()
 {
   port_.close();
+}
+
+void Line::abandon()
+{
+  port_.abandon();
 }
 
 bool Line::isOpen() const
@@ -127,7 +145,7 @@ bool Line::settle(Duration quiet)
   ready_at_ = std::min(ready_at_, clock_.now());
   if (result == ReceiveResult::Gone)
   {
-    port_.close();
+    noteLoss();
   }
   return result == ReceiveResult::Silence;
 }
@@ -183,6 +201,46 @@ bool Line::echoFound() const
   return echo_.found();
 }
 
+Loss Line::lastLoss() const
+{
+  return last_loss_;
+}
+
+bool Line::provenSinceOpen() const
+{
+  return proven_;
+}
+
+bool Line::telnetFound() const
+{
+  return false;
+}
+
+std::string Line::peerWords() const
+{
+  return "";
+}
+
+std::vector<Outstanding> Line::outstanding() const
+{
+  return {};
+}
+
+std::string Line::gatewayQuirk() const
+{
+  return "";
+}
+
+std::string Line::mustReopen() const
+{
+  return "";
+}
+
+void Line::setGatewayTimeout(Duration timeout)
+{
+  gateway_timeout_ = timeout;
+}
+
 std::vector<LateReply> Line::takeLateReplies()
 {
   return std::exchange(late_, {});
@@ -195,7 +253,7 @@ bool Line::send(const Bytes& frame, Reply& reply)
   {
     return false;
   }
-  ++counters_.requests;
+  reply.ticket = ++counters_.requests;
   observe(FrameEvent::Kind::Request, frame, reply.sent_at);
   return true;
 }
@@ -349,23 +407,25 @@ void Line::accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw
 {
   echo_.answered(damaged_.empty());
   reportDamaged();
-  noteAnswer(parsed, raw);
+  reply.gateway_code = gatewayCode(parsed, waiting.request.own_exceptions);
+  reply.outcome = outcomeOf(parsed, reply.gateway_code);
+  noteAnswer(reply.outcome, parsed, raw);
+  proven_ = true;
   if (parsed.kind == Parsed::Kind::Reply && protocol_.isLoopback(waiting.request) && mayAsk(waiting.request))
   {
     bars_.lift(parsed.station, waiting.sent_at);
   }
-  reply.outcome = outcomeOf(parsed);
   reply.pdu = parsed.pdu;
-  reply.error_id = parsed.error_id;
+  reply.error_id = reply.gateway_code != 0 ? ERROR_TIMEOUT : parsed.error_id;
   reply.finished_at = last_byte_at_;
   reply.turnaround = std::max(Duration{ 0 }, *waiting.first_byte_at - waiting.request_end);
 }
 
-void Line::noteAnswer(const Parsed& parsed, const Bytes& raw)
+void Line::noteAnswer(Outcome outcome, const Parsed& parsed, const Bytes& raw)
 {
   const bool normal = parsed.kind == Parsed::Kind::Reply;
   observe(normal ? FrameEvent::Kind::Reply : FrameEvent::Kind::Exception, raw, last_byte_at_);
-  switch (outcomeOf(parsed))
+  switch (outcome)
   {
     case Outcome::Damaged:
       ++counters_.corrupt_replies;
@@ -399,12 +459,22 @@ void Line::giveUp(Waiting& waiting, Reply& reply)
   ++(damaged ? counters_.corrupt_replies : counters_.timeouts);
   reply.outcome = damaged ? Outcome::Damaged : Outcome::Timeout;
   reply.error_id = damaged ? ERROR_DAMAGED : ERROR_TIMEOUT;
-  bars_.add(waiting.shape, waiting.request.station, waiting.request_end, reply.finished_at);
+  bars_.add(waiting.shape, waiting.request.station, { waiting.request_end, reply.ticket }, reply.finished_at);
+}
+
+/// The port has said that it is gone.
+void Line::noteLoss()
+{
+  last_loss_ = port_.lastLoss();
+  port_.close();
 }
 
 void Line::lose(Reply& reply)
 {
-  port_.close();
+  if (port_.isOpen())
+  {
+    noteLoss();
+  }
   reply.outcome = Outcome::PortLost;
   reply.error_id = ERROR_PORT_LOST;
   reply.finished_at = clock_.now();
@@ -451,7 +521,7 @@ void Line::consumeIdleHead()
     case Parsed::Kind::Reply:
     case Parsed::Kind::Exception:
     case Parsed::Kind::NotUnderstood:
-      noteAnswer(parsed, take(parsed.consumed));
+      noteAnswer(outcomeOf(parsed, gatewayCode(parsed, request->own_exceptions)), parsed, take(parsed.consumed));
       return;
   }
 }
@@ -468,10 +538,22 @@ bool Line::noteUnasked(const Parsed& parsed, const Bytes& raw)
   const bool own = late || parsed.kind == Parsed::Kind::Late;
   observe(own ? FrameEvent::Kind::Late : FrameEvent::Kind::Foreign, raw, last_byte_at_);
   ++(own ? counters_.late_replies : counters_.foreign_frames);
-  // No longer time-out makes a drive answer that a gateway has given up.
-  if (late && late->request_end && parsed.error_id != ERROR_TIMEOUT)
+  if (late)
   {
-    late_.push_back({ parsed.station, head_at_ - *late->request_end });
+    LateReply reply;
+    reply.station = parsed.station;
+    reply.gateway_code = gatewayCode(parsed, everyExceptionOfADrive());
+    reply.exception = reply.gateway_code == 0 && parsed.error_id != 0;
+    if (*late)
+    {
+      reply.ticket = (*late)->ticket;
+    }
+    // No longer time-out makes a drive answer that a gateway has given up.
+    if (*late && reply.gateway_code == 0)
+    {
+      reply.delay = head_at_ - (*late)->request_end;
+    }
+    late_.push_back(reply);
   }
   return own;
 }

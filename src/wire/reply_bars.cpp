@@ -20,7 +20,7 @@ bool beginsWith(const std::string& text, const std::string& beginning)
 }
 }  // namespace
 
-void ReplyBars::add(const std::string& shape, std::uint8_t station, TimePoint request_end, TimePoint now)
+void ReplyBars::add(const std::string& shape, std::uint8_t station, const Lost& lost, TimePoint now)
 {
   forgetOld(now);
   Bar& bar = bars_[shape];
@@ -28,7 +28,7 @@ void ReplyBars::add(const std::string& shape, std::uint8_t station, TimePoint re
   bar.owed = bar.until > now ? bar.owed : 0;
   bar.station = station;
   bar.until = now + BAR_TIME;
-  bar.request_end = request_end;
+  bar.lost = lost;
   ++bar.owed;
 }
 
@@ -61,7 +61,9 @@ std::optional<ReplyBars::Late> ReplyBars::take(const std::string& shape, TimePoi
   {
     return Late{};
   }
-  const Late late{ first->second.request_end };
+  Late late(first->second.lost);
+  // The last one's bar, but the answer may be that to the one before.
+  late->ticket = first->second.owed > 1 ? 0 : late->ticket;
   if (--first->second.owed == 0)
   {
     bars_.erase(first);
@@ -73,7 +75,7 @@ void ReplyBars::lift(std::uint8_t station, TimePoint time)
 {
   for (auto bar = bars_.begin(); bar != bars_.end();)
   {
-    const bool answered_since = bar->second.station == station && bar->second.request_end <= time;
+    const bool answered_since = bar->second.station == station && bar->second.lost.request_end <= time;
     bar = answered_since ? bars_.erase(bar) : std::next(bar);
   }
 }

@@ -125,9 +125,30 @@ public:
     socket_.close(ignored);
   }
 
+  void abandon() override
+  {
+    boost::system::error_code ignored;
+    if (socket_.is_open())
+    {
+      // The close then sends RST and throws away what is still to be sent.
+      socket_.set_option(tcp::socket::linger(true, 0), ignored);
+    }
+    close();
+  }
+
   bool isOpen() const override
   {
     return socket_.is_open();
+  }
+
+  Loss lastLoss() const override
+  {
+    return last_loss_;
+  }
+
+  bool isNetwork() const override
+  {
+    return true;
   }
 
   std::string name() const override
@@ -146,10 +167,17 @@ public:
       sent += socket_.write_some(boost::asio::buffer(frame.data() + sent, frame.size() - sent), failure);
       if (failure && !isTemporary(failure))
       {
+        last_loss_ = lossBy(failure);
         return false;
       }
     }
-    return socket_.is_open() && sent == frame.size();
+    const bool done = socket_.is_open() && sent == frame.size();
+    if (!done && socket_.is_open())
+    {
+      // No room until the deadline: 0. Otherwise why it has hung up.
+      last_loss_ = lossBy({ errorOf(socket_.native_handle()), boost::system::system_category() });
+    }
+    return done;
   }
 
   ReceiveResult receive(Bytes& buffer, TimePoint deadline) override
@@ -169,6 +197,7 @@ public:
       }
       if (state == DescriptorState::HungUp || !isTemporary(failure))
       {
+        last_loss_ = lossBy(failure);
         return ReceiveResult::Gone;
       }
     }
@@ -179,6 +208,14 @@ private:
   static bool isTemporary(const boost::system::error_code& failure)
   {
     return failure == boost::asio::error::would_block || failure == boost::asio::error::interrupted;
+  }
+
+  /// A host that is alive ends a connection by FIN or RST; a dead one or a dead network by the system's patience.
+  static Loss lossBy(const boost::system::error_code& failure)
+  {
+    const bool by_peer = failure == boost::asio::error::eof || failure == boost::asio::error::connection_reset ||
+                         failure == boost::asio::error::broken_pipe;
+    return by_peer ? Loss::ClosedByPeer : Loss::Gone;
   }
 
   /// Returns what went wrong; empty if nothing did.
@@ -243,6 +280,7 @@ private:
   NameLookup lookup_;
   boost::asio::io_context context_;
   tcp::socket socket_;
+  Loss last_loss_ = Loss::Gone;
 };
 }  // namespace
 

@@ -287,7 +287,8 @@ TEST_F(ModbusTcpLine, aLateReplyAloneIsATimeoutAndMeasured)
   const std::vector<LateReply> late = line_.takeLateReplies();
   ASSERT_EQ(1u, late.size());
   EXPECT_EQ(1, late[0].station);
-  EXPECT_NEAR(toSeconds(ms(150) - timing_.characters(8 + 3 * 3.5)), toSeconds(late[0].delay), 1e-6);
+  EXPECT_NEAR(toSeconds(ms(150) - timing_.characters(8 + 3 * 3.5)), toSeconds(late[0].delay.value()), 1e-6);
+  EXPECT_EQ(1u, late[0].ticket);
 }
 
 TEST_F(ModbusTcpLine, eachOfSeveralLostRequestsIsKnownByItsReply)
@@ -334,7 +335,11 @@ TEST_F(ModbusTcpLine, aGatewaysLateExceptionIsNotMeasured)
   ask(READ);
   EXPECT_EQ(Outcome::Timeout, ask(READ).outcome);
   EXPECT_EQ(1u, line_.counters().late_replies);
-  EXPECT_TRUE(line_.takeLateReplies().empty()) << "no longer time-out would have made the drive answer";
+  const std::vector<LateReply> late = line_.takeLateReplies();
+  ASSERT_EQ(1u, late.size());
+  EXPECT_FALSE(late[0].delay) << "no longer time-out would have made the drive answer";
+  EXPECT_EQ(0x0B, late[0].gateway_code);
+  EXPECT_EQ(1u, late[0].ticket);
 }
 
 TEST_F(ModbusTcpLine, anAnswerToABroadcastIsNotForeign)

@@ -28,13 +28,16 @@ public:
 
 private:
   TimePoint openPort();
-  void lose();
+  TimePoint noteOpening(wire::OpenResult result, const std::string& error);
+  bool reopen();
 
   Coordinator& coordinator_;
   wire::Line& line_;
   wire::Clock& clock_;
   std::mutex& mutex_;
   TimePoint next_open_;
+  /// An attempt to open the port is under way.
+  bool opening_ = false;
   std::optional<TimePoint> in_use_since_;
   bool ever_opened_ = false;
   bool given_up_ = false;

@@ -107,6 +107,8 @@ public:
   bool offline() const;
   /// A complete status has come since start or return.
   bool known() const;
+  /// A complete status has come since the node was started.
+  bool everKnown() const;
   /// It answers again, but no complete status has come yet: to users it is still away.
   bool unreadSinceReturn() const;
   /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
@@ -193,6 +195,7 @@ private:
 
   int offline_after_;
   bool known_ = false;  ///< a complete status has come since start or return
+  bool ever_known_ = false;
   bool offline_ = false;
   int failures_ = 0;
   std::uint16_t exchange_error_ = 0;

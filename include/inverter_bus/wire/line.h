@@ -74,12 +74,29 @@ struct LineCounters
   std::uint64_t echoes = 0;          ///< exchanges whose local echo was removed
 };
 
-/// A late reply, measured: /diagnostics says which response_timeout would have caught it.
+/// The answer to a request that had been given up.
 struct LateReply
 {
+  /// That was asked; what a gateway makes of it in the reply does not count.
   std::uint8_t station = 0;
-  /// From the end of the request on the wire to the first byte of its late reply.
-  Duration delay{ 0 };
+  /// From the end of the request on the wire to the first byte of its late reply: /diagnostics says which
+  /// response_timeout would have caught it. Absent where that says nothing: several lost requests could have got this
+  /// reply, or no longer time-out makes a drive answer that a gateway has given up.
+  std::optional<Duration> delay;
+  /// Reply::ticket of the request; 0 where several could have got this reply.
+  std::uint64_t ticket = 0;
+  /// The drive refuses (an exception of its own).
+  bool exception = false;
+  /// The exception code by which a gateway says that the drive has not answered; 0: the drive did.
+  std::uint8_t gateway_code = 0;
+};
+
+/// A request that was sent on this connection, timed out (or got something damaged), and may still be in the gateway.
+struct Outstanding
+{
+  std::uint64_t ticket = 0;
+  std::uint8_t station = 0;
+  TimePoint sent_at;
 };
 
 /// One request at a time over one port: gap, transmission, waiting, checking, cleaning up after a lost reply. The only
@@ -101,8 +118,11 @@ public:
 
   /// Opens the port; forgets all bars, the echo finding and what was in the buffers. The first exchange after it must
   /// be a read (see EchoFilter); it need not be answered.
+  /// May be Pending (see Port): nothing is forgotten before it is Opened.
   OpenResult open(std::string& error);
   void close();
+  /// As close(), but what was sent and has not arrived yet is thrown away (TCP: RST).
+  void abandon();
   bool isOpen() const;
 
   /// Earliest time at which the next request may start: gap after the last byte in either direction, turnaround after a
@@ -132,8 +152,31 @@ public:
   const LineCounters& counters() const;
   const LineTiming& timing() const;
   bool echoFound() const;
-  /// Late replies since the last call.
+  /// Late replies since the last call, refusals and a gateway's exceptions included.
   std::vector<LateReply> takeLateReplies();
+
+  // --- the connection and its other end (contract, 8.8 to 8.11) -----------------------------------------------------
+  /// How the port got lost since it was opened last; None while it is open or if close() or abandon() ended it.
+  Loss lastLoss() const;
+  /// A valid reply came since it was opened.
+  bool provenSinceOpen() const;
+  /// The other end of an `rtu+tcp://` connection has begun to speak telnet before its first valid reply: FFH is doubled
+  /// in what is sent from then on, and undoubled in what is received.
+  bool telnetFound() const;
+  /// Text that the other end has sent since it was opened or since its last valid reply, fit for a message; empty if
+  /// what came is no text. A server that closes says so why ("Port already in use"); one that goes on has only greeted.
+  /// Kept until the port is opened again.
+  std::string peerWords() const;
+  /// Modbus TCP: requests of this connection that nobody has answered yet, oldest first. Empty in other protocols.
+  std::vector<Outstanding> outstanding() const;
+  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies bear transaction number 0"),
+  /// so that they cannot be trusted; empty as long as it does not.
+  std::string gatewayQuirk() const;
+  /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come
+  /// could not be told apart; empty if it need not.
+  std::string mustReopen() const;
+  /// Time after which a gateway has given up a request that it left unanswered (`gateway_timeout`, default 3 s).
+  void setGatewayTimeout(Duration timeout);
 
 private:
   struct Waiting;
@@ -147,9 +190,10 @@ private:
   bool consumeHead(Waiting& waiting, Reply& reply);
   bool answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
   void accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
-  void noteAnswer(const Parsed& parsed, const Bytes& raw);
+  void noteAnswer(Outcome outcome, const Parsed& parsed, const Bytes& raw);
   void expectEcho(const Request& request, const Bytes& frame);
   void giveUp(Waiting& waiting, Reply& reply);
+  void noteLoss();
   void lose(Reply& reply);
   void consumeIdle();
   void flushIdle();
@@ -183,6 +227,10 @@ private:
   ReplyBars bars_;
   EchoFilter echo_;
   std::vector<LateReply> late_;
+  Duration gateway_timeout_{ std::chrono::seconds(3) };
+  Loss last_loss_ = Loss::None;
+  /// A valid reply came since the port was opened.
+  bool proven_ = false;
   /// The last request if it was one that the drive may answer or not.
   std::optional<Request> silent_request_;
 };

@@ -35,6 +35,7 @@ private:
     double hertz = 0.0;
     double drift = 0.0;
     double period = 0.1;
+    bool dips = false;  ///< goes near zero now and then, as a controller does
     TimePoint until;
     std::string publisher;
   };
@@ -47,6 +48,8 @@ private:
   void beginStream(std::size_t index);
   void tickStream(std::size_t index, unsigned number);
   void sendVelocity(std::size_t index, double hertz, const std::string& publisher);
+  void sendNearZero(std::size_t index, const std::string& publisher);
+  double nearZero(std::size_t index);
   void sendLatched(std::size_t index);
   void sendGroup();
   void sendNonsense(std::size_t index);
@@ -67,10 +70,13 @@ private:
   void resetAll();
   void runAll();
   bool runOne(std::size_t index);
+  void startAgain(std::size_t index, int& times);
   void stopAll();
 
   World& world_;
   Dice dice_;
+  /// For what goes beyond limits and near zero: the rest of a story does not depend on it.
+  Dice limits_dice_;
   std::vector<Stream> streams_;
   bool acting_ = false;      ///< chance goes on
   bool streaming_ = false;   ///< streams go on

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "text.h"
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -132,7 +132,8 @@ Duration Budget::longestExchange() const
       longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
-  return longest;
+  // One that breaks off, or pauses, ends a pause later.
+  return longest + line_.patience();
 }
 
 Duration Budget::worstStop() const
@@ -239,7 +240,7 @@ std::vector<Finding> Budget::findings() const
     const InverterConfig& config = configuration_.bus.inverters[index];
     if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
     {
-      findings.push_back({ Level::Warn, config.name + ": command_timeout " + text::number(config.command_timeout) +
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + wire::shownNumber(config.command_timeout) +
                                             " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
     }
     const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;

@@ -14,7 +14,9 @@ namespace
 constexpr double OPEN_PERIOD_S = 0.2;
 // A connection that its other end has closed is tried again so often, for as long as motors run on.
 constexpr double RESUME_PERIOD_S = 0.05;
-constexpr double IN_USE_PATIENCE_S = 15.0;
+// Every try moves the RTS line of whoever has the port.
+constexpr double IN_USE_PERIOD_S = 1.0;
+constexpr double IN_USE_PATIENCE_S = 30.0;
 }  // namespace
 
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
@@ -37,47 +39,58 @@ TimePoint BusLoop::openPort()
   const TimePoint now = clock_.now();
   TimePoint not_before;
   {
+    // Statuses go on at their pace, however seldom the port is tried.
     const std::lock_guard<std::mutex> guard(mutex_);
     coordinator_.tick(now);
     not_before = coordinator_.resuming() ? now : std::max(next_open_, coordinator_.openNotBefore());
   }
   if (now < not_before && !opening_)
   {
-    // Statuses go on meanwhile.
     return std::min(not_before, now + seconds(OPEN_PERIOD_S));
   }
-  next_open_ = opening_ ? next_open_ : now + seconds(OPEN_PERIOD_S);
   std::string error;
   const wire::OpenResult result = line_.open(error);
   opening_ = result == wire::OpenResult::Pending;
+  if (!opening_)
+  {
+    next_open_ = now + seconds(result == wire::OpenResult::InUse ? IN_USE_PERIOD_S : OPEN_PERIOD_S);
+  }
   const std::lock_guard<std::mutex> guard(mutex_);
   return noteOpening(result, error);
 }
 
+/// How an attempt to open the port ended, and when the next round is.
 TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error)
 {
   const TimePoint now = clock_.now();
-  if (result == wire::OpenResult::Opened)
+  switch (result)
   {
-    ever_opened_ = true;
-    coordinator_.portOpened(now);
-    return now;
-  }
-  if (result == wire::OpenResult::Pending)
-  {
-    coordinator_.portPending(now);
-    return now;
+    case wire::OpenResult::Opened:
+      ever_opened_ = true;
+      coordinator_.portOpened(now);
+      return now;
+    case wire::OpenResult::Pending:
+      coordinator_.portPending(now);
+      return now;
+    default:
+      break;
   }
   const bool in_use = result == wire::OpenResult::InUse;
   coordinator_.portMissing(now, error, in_use);
+  judgePatience(now, in_use);
+  return now + seconds(coordinator_.resuming() ? RESUME_PERIOD_S : OPEN_PERIOD_S);
+}
+
+/// A port that was never ours may stay somebody else's; one that was will come back.
+void BusLoop::judgePatience(TimePoint now, bool in_use)
+{
   if (!in_use || ever_opened_)
   {
     in_use_since_.reset();
-    return coordinator_.resuming() ? now + seconds(RESUME_PERIOD_S) : next_open_;
+    return;
   }
   in_use_since_ = in_use_since_ ? in_use_since_ : std::optional<TimePoint>(now);
   given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
-  return next_open_;
 }
 
 /// Reasons of ours to give up an open port and open it anew; true if there was one.

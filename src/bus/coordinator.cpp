@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "text.h"
+#include "inverter_bus/wire/shown_number.h"
 
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
@@ -30,10 +30,11 @@ constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
 
-/// At shutdown every stop is written before the first of them is read back: no motor waits for another's confirmation.
+/// At shutdown stops take turns: every one is written before the first of them is read back, so that no motor waits for
+/// another's confirmation; nor for one that somebody asks to be stopped again and again.
 bool goesBefore(const StopJob& stop, const StopJob& other)
 {
-  return std::make_pair(stop.attempts(), stop.written()) < std::make_pair(other.attempts(), other.written());
+  return std::make_pair(stop.attempts(), stop.lastSentAt()) < std::make_pair(other.attempts(), other.lastSentAt());
 }
 
 Duration longestResponseTimeout(const BusConfig& bus)
@@ -92,7 +93,8 @@ void Coordinator::watchDeadMen(TimePoint now)
 {
   for (const auto& inverter : inverters_)
   {
-    if (inverter->interlock.deadManDue(now) && !inverter->stop.pending())
+    // A stop that locks nothing (a 0, a RUN that got lost) may be pending: silence locks all the same.
+    if (inverter->interlock.deadManDue(now) && !inverter->interlock.stopPending())
     {
       requestStop(now, *inverter, StopMode::Decelerate, true,
                   refusals_.deadManReason(inverter->index, inverter->config.command_timeout));
@@ -232,11 +234,15 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
 
 std::optional<Coordinator::Current> Coordinator::composeBroadcast()
 {
-  if (!broadcast_due_)
+  // Who stops all again and again must not keep the single stops from being sent and confirmed.
+  const bool again = broadcast_last_;
+  broadcast_last_ = false;
+  if (!broadcast_due_ || again)
   {
     return std::nullopt;
   }
   broadcast_due_ = false;
+  broadcast_last_ = true;
   const Inverter& any = *inverters_.front();
   const drive::Step& step = any.drive.sequence("stop")->steps.front();
   Current current;
@@ -641,7 +647,7 @@ void Coordinator::noteStopLatency(Duration latency)
   const Duration in_gateway = worstStop() - budget_.worst_stop - longestReplyDelay();
   if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64) + in_gateway)
   {
-    outputs_.traces.push_back("stop took " + text::number(toSeconds(latency)) + " s to the wire");
+    outputs_.traces.push_back("stop took " + wire::shownDuration(latency) + " to the wire");
   }
 }
 }  // namespace bus

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "inverter_bus/bus/coordinator.h"
-#include "text.h"
+#include "inverter_bus/wire/shown_number.h"
 
 // The way to the drives: what a gateway still works on, connections that are closed by their other end, links that have gone
 // mute, telnet servers.
@@ -157,10 +157,10 @@ std::optional<Finding> Coordinator::gatewayFinding() const
                     "that it says so within response_timeout" };
   }
   return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
-                                   text::duration(gateway_.block()) +
+                                   wire::shownDuration(gateway_.block()) +
                                    ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
                                    "(1 + repeats) below response_timeout (" +
-                                   text::duration(allowed) + ")" };
+                                   wire::shownDuration(allowed) + ")" };
 }
 
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.

@@ -390,8 +390,8 @@ void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uin
   }
   if (!index && broadcastIsSafe())
   {
+    broadcast_requested_ = broadcast_due_ ? broadcast_requested_ : now;
     broadcast_due_ = true;
-    broadcast_requested_ = now;
   }
   if (call.callback)
   {

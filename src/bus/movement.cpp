@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inverter_bus/wire/shown_number.h"
+
 namespace inverter_bus
 {
 namespace bus

@@ -13,7 +13,7 @@ namespace
 {
 // Contract, rule 3.3: three attempts at once, then every second exchange at most.
 constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
-// A flood of stops: so many exchanges, then a read-back waits for one of another kind.
+// A flood of stops: after so many exchanges, a read-back or a needless stop alternates with exchanges of another kind.
 constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 // Other exchanges between two frames of a stop that insists.
 constexpr std::uint64_t INSISTING_SPACING = 1;
@@ -30,7 +30,7 @@ Scheduler::Scheduler(const Settings& settings)
   : settings_(settings)
   , stop_pending_(settings.inverters, false)
   , last_stop_exchange_(settings.inverters, 0)
-  , silent_at_deadline_(settings.inverters, false)
+  , silent_at_deadline_(settings.inverters, 0)
   , last_probe_(settings.inverters)
 {
 }
@@ -195,8 +195,9 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
   // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
   const bool goes_on = pick.what == Pick::What::Refresh && half_refreshed_ == pick.inverter;
   deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
-  stops_in_a_row_ = pick.what == Pick::What::Stop ? stops_in_a_row_ + 1 : 0;
-  if (pick.what == Pick::What::Stop)
+  const bool stop = pick.what == Pick::What::Stop;
+  stops_in_a_row_ = stop ? stops_in_a_row_ + 1 : let_through_ ? stops_in_a_row_ : 0;
+  if (stop)
   {
     bookStop(pick, views);
   }
@@ -207,11 +208,16 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 {
   if (auto stop = pickStop(now, views, false))
   {
-    // Who stops again and again must not blind the driver: not a stop's write, but its read-back lets another one through.
-    const bool gives_way = views[stop->inverter].stop_written && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
+    // Who stops again and again must not blind the driver: not the write of a stop that takes RUN off, but its read-back
+    // and one that only repeats it let another exchange through.
+    const InverterView& view = views[stop->inverter];
+    const bool may_wait = view.stop_written || view.stop_repeats;
+    const bool gives_way = may_wait && !let_through_ && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
     const auto other = gives_way ? chooseBehindStops(now, views) : std::nullopt;
+    let_through_ = other.has_value();
     return other ? *other : *stop;
   }
+  let_through_ = false;
   if (auto urgent = pickCommand(now, true))
   {
     return *urgent;
@@ -357,7 +363,8 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
 
 std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
 {
-  // One that did not answer when its time came lets the others go before it is tried again.
+  // One that did not answer when its time came lets the others go before it is tried again; several such take turns, since
+  // the time of one that never answers never moves.
   const auto key = [&](std::size_t index) {
     return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by);
   };
@@ -549,7 +556,7 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
         refreshed_in_cycle_ = true;
         cursor_ += more ? 0 : 1;
       }
-      silent_at_deadline_[pick.inverter] = !answered;
+      silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
       // A repeat has no right to the next exchange: another drive's time may come meanwhile.
       noteHalfRefresh(pick, more && answered);
       break;

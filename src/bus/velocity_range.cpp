@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "text.h"
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -62,7 +62,7 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
 {
   if (!std::isfinite(velocity))
   {
-    return refused("velocity " + text::number(velocity) + " is not a finite number");
+    return refused("velocity " + wire::shownNumber(velocity, 9) + " is not a finite number");
   }
   if (stops(velocity))
   {
@@ -70,9 +70,10 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
   }
   if (beyond(velocity) && config_.limit == Limit::Refuse)
   {
-    const std::string least = config_.min_velocity > 0.0 ? text::number(config_.min_velocity) + " to " : "up to ";
-    return refused("velocity " + text::number(velocity) + " is out of range: 0, or " + least +
-                   text::number(config_.max_velocity) + " in either direction");
+    const std::string least =
+        config_.min_velocity > 0.0 ? wire::shownNumber(config_.min_velocity, 9) + " to " : "up to ";
+    return refused("velocity " + wire::shownNumber(velocity, 9) + " is out of range: 0, or " + least +
+                   wire::shownNumber(config_.max_velocity, 9) + " in either direction");
   }
   RangedVelocity ranged = ofKind(RangedVelocity::Kind::Motion);
   // The one that is clamped most gets its maximum, not what is left of it after two roundings.
@@ -81,8 +82,8 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
   ranged.velocity = std::copysign(std::min(reduced, config_.max_velocity), velocity);
   if (nearZero(ranged.velocity))
   {
-    return refused("velocity " + text::number(velocity) + " comes near zero when all are reduced to " +
-                   text::number(factor * 100.0) + " % for the one that is clamped most");
+    return refused("velocity " + wire::shownNumber(velocity, 9) + " comes near zero when all are reduced to " +
+                   wire::shownNumber(factor * 100.0, 9) + " % for the one that is clamped most");
   }
   return ranged;
 }

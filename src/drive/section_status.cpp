@@ -125,6 +125,10 @@ void readField(const std::string& field, const YamlCursor& cursor, const Numberi
     return;
   }
   checkMeaning(kind, field, *item, cursor);
+  if (leftOutForUnit(field, *item, cursor))
+  {
+    return;
+  }
   profile.status[field] = *item;
   if (slow)
   {

@@ -236,7 +236,7 @@ const Mistake MISTAKES[] = {
   { "TwoWordsWhereOneIsWritten", "  write_registers: 8", "  write_registers: 1", "parameters.P02", "needs a write of 2 registers: limits allow 1", -1 },
   { "CountOfARegister", "  running: {coil: 5}", "  raw_status: {register: 5, count: 17}", "status.raw_status.count", "unknown key", 0 },
   { "TwoFlagsOnOneBitOfARegister", "  running: {coil: 5}", "  faulted: {register: 5, bit: 3}\n  ready: {register: 5, bit: 3}", "status.ready", "the same bit as 'faulted'", 1 },
-  { "NothingConfirmedToRead", "  run_seen: {coil: 1}\n  running: {coil: 5}\n  output_frequency: {register: 0x0100, resolution: 0.01, unit: Hz}\n", "  run_seen: {coil: 1, unconfirmed: bits}\n", "status", "has no confirmed field that is read in every refresh: needs one, or keep_alive", -1 },
+  { "NothingConfirmedToRead", "  run_seen: {coil: 1}\n  running: {coil: 5}\n  output_frequency: {register: 0x0100, resolution: 0.01, unit: Hz}\n", "  run_seen: {coil: 1, unconfirmed: bits}\n", "status", "has no confirmed field that is read in every refresh: needs one (that is not left out), or keep_alive", -1 },
   { "NothingFastToRead", "  run_seen: {coil: 1}\n  running: {coil: 5}\n  output_frequency: {register: 0x0100, resolution: 0.01, unit: Hz}\n", "  run_seen: {coil: 1, slow: true}\n", "status", "keep_alive", -1 },
   { "KeepAliveUnconfirmed", "faults:", "keep_alive: {register: 5, unconfirmed: alive}\nfaults:", "keep_alive", "must be confirmed", 0 },
   { "KeepAliveUnknown", "faults:", "keep_alive: {register: unknown, unconfirmed: alive}\nfaults:", "keep_alive", "must be confirmed", 0 },

@@ -159,6 +159,17 @@ public:
     return box;
   }
 
+  /// What makes the inverter's lamp yellow or red; empty: it is green.
+  std::string findings(std::size_t index)
+  {
+    std::string text;
+    for (const bus::Finding& finding : coordinator_.report(clock_.now()).inverters.at(index).findings)
+    {
+      text += finding.text + "\n";
+    }
+    return text;
+  }
+
   /// All lines of /diagnostics about one inverter, findings and values.
   std::string diagnostics(std::size_t index)
   {

@@ -43,7 +43,7 @@ public:
   /// Starts the bus thread. Opens the port; goes on trying while it is missing.
   void start();
 
-  /// True when the port was in use by another process for 15 s after start(): end with status 1.
+  /// True when the port was in use by another process for 30 s after start(): end with status 1.
   bool portInUse() const;
 
   /// Stops every motor that may run, waits for the confirmations within the contract's bound (at most 10 s), closes the

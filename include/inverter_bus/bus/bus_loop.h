@@ -22,7 +22,7 @@ public:
 
   /// One round, at most one exchange. Returns the time of the next round at the latest; in the past: at once.
   TimePoint step();
-  /// The port was in use by another process from the start, for 15 s.
+  /// The port was in use by another process from the start, for 30 s.
   bool portInUse() const;
   void close();
 
@@ -30,6 +30,7 @@ private:
   TimePoint openPort();
   TimePoint noteOpening(wire::OpenResult result, const std::string& error);
   bool reopen();
+  void judgePatience(TimePoint now, bool in_use);
 
   Coordinator& coordinator_;
   wire::Line& line_;

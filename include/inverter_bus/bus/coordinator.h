@@ -327,6 +327,8 @@ private:
   std::vector<bool> shutdown_tried_;
   std::vector<bool> released_;
   bool broadcast_due_ = false;
+  /// The last exchange was one.
+  bool broadcast_last_ = false;
   TimePoint broadcast_requested_;
 
   Outputs outputs_;

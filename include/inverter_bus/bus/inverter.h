@@ -187,7 +187,7 @@ private:
   bool writesWear() const;
   std::string blockFinding() const;
   std::vector<int> wantedWriteCodes() const;
-  void judgeRestart(const drive::Monitor& monitor, Judgement& judgement);
+  void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
@@ -225,6 +225,8 @@ private:
   std::optional<TimePoint> run_shown_at_;
   /// The drive's own copy of our RUN command was read as on since the last lost exchange.
   bool run_proven_ = false;
+  /// By then the drive had not restarted.
+  TimePoint no_restart_until_;
   double last_shown_hz_ = 0.0;
   bool block_configured_ = false;
   std::string block_note_;

@@ -52,6 +52,8 @@ struct InverterView
   unsigned stop_attempts = 0;
   /// The stop is written and only its read-back is due.
   bool stop_written = false;
+  /// One of a flood of stops of an inverter whose RUN is off already.
+  bool stop_repeats = false;
   /// No exchange before this time (the reply of an earlier one could be taken for its answer).
   TimePoint refresh_not_before;
   /// Latest start of the next exchange if the drive's own communication time-out shall not strike.
@@ -200,10 +202,13 @@ private:
   // stops
   std::vector<bool> stop_pending_;
   std::vector<std::uint64_t> last_stop_exchange_;
-  /// Its last refresh was not answered.
-  std::vector<bool> silent_at_deadline_;
+  /// The exchange in which its refresh was not answered last; 0: it has answered since.
+  std::vector<std::uint64_t> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
+  /// Frames of stops since the last exchange that took nothing from a stop.
   unsigned stops_in_a_row_ = 0;
+  /// The last exchange went although a stop waited.
+  bool let_through_ = false;
 
   // commands and refreshes
   CommandId unit_ = 0;

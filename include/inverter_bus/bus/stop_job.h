@@ -29,6 +29,12 @@ public:
   unsigned attempts() const;
   /// Written and acknowledged: the read-back is next.
   bool written() const;
+  /// Somebody asks for it again and again: it was confirmed several times in a row, each time shortly before the next one.
+  bool repeats() const;
+  /// The inverter is out of sight: whatever was confirmed may be over.
+  void forgetConfirmation();
+  /// When the last frame of any stop of this inverter left; the epoch: none has.
+  TimePoint lastSentAt() const;
 
   /// The next frame of the stop.
   wire::Request next() const;
@@ -77,6 +83,9 @@ private:
   std::size_t step_ = 0;
   std::uint16_t last_error_ = 0;
   TimePoint requested_at_;
+  TimePoint last_sent_at_;
+  bool confirmed_ = false;
+  unsigned repeats_ = 0;
   bool first_frame_left_ = false;
   bool first_frame_answered_ = false;
   bool provisional_ = false;

@@ -64,6 +64,10 @@ void Coordinator::done(const wire::Reply& reply)
   }
   Inverter& inverter = *inverters_[current.inverter];
   inverter.noteExchange(reply.outcome);
+  if (current.request.expects_reply)
+  {
+    inverter.record.note(reply);
+  }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
     log(Level::Ok, inverter.config.name + ": online");
@@ -135,17 +139,17 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
 {
   if (inverter.failed(now, error_id))
   {
-    wentOffline(now, inverter, error_id);
+    wentOffline(now, inverter);
   }
 }
 
-void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
 {
   scheduler_->eraseVelocity(inverter.index);
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id));
+    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason());
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -593,7 +597,7 @@ void Coordinator::portLost(TimePoint now)
     if (!inverter->offline())
     {
       inverter->goOffline(wire::ERROR_PORT_LOST);
-      wentOffline(now, *inverter, wire::ERROR_PORT_LOST);
+      wentOffline(now, *inverter);
     }
     inverter->noteExchangeError(wire::ERROR_PORT_LOST);
   }

@@ -92,6 +92,11 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     }
   }
   judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
+  if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
+  {
+    judged.text =
+        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
+  }
   return judged.error_id;
 }
 
@@ -147,7 +152,7 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
   {
     Inverter& inverter = *inverters_[command.targets[position].first];
     const std::string& text = judged[position].text;
-    inverter.refuseCommand(error_id, text.empty() ? "the group was refused: " + errorText(error_id) : text);
+    text.empty() ? inverter.refuseForOther(error_id) : inverter.refuseCommand(error_id, text);
   }
   return error_id;
 }

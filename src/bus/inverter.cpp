@@ -114,6 +114,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   leftover_judged_ = false;
   early_trip_ = false;
   exchange_error_ = error_id;
+  command_error_.wentOffline();
   run_shown_at_.reset();
   run_proven_ = false;
   setup_open = false;
@@ -365,6 +366,7 @@ Duration Inverter::slowestReply() const
 void Inverter::lateReply(Duration delay)
 {
   latest_late_reply_ = std::max(latest_late_reply_, delay);
+  record.noteLate();
 }
 
 // --- judgement -------------------------------------------------------------------------------------------------------
@@ -374,6 +376,7 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  record.restart();
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
   const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
@@ -558,26 +561,60 @@ InverterStatus Inverter::status(TimePoint now) const
   status.reset_active = reset_active;
   status.stop_active = stop.pending();
   status.locked = interlock.locked(now);
-  status.error_id = command_error_ != 0 ? command_error_ : exchange_error_;
-  if (status.error_id != 0)
-  {
-    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_);
-  }
+  showError(now, status);
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
   return status;
 }
 
+Obstacles Inverter::obstacles() const
+{
+  Obstacles obstacles;
+  obstacles.offline = offline_ || unreadSinceReturn();
+  obstacles.stop_pending = interlock.stopPending();
+  obstacles.reset_active = reset_active;
+  obstacles.in_setup = inSetup();
+  obstacles.wrong_drive = !wrongDrive().empty();
+  return obstacles;
+}
+
+/// A refused command is shown before a lost exchange, but not before the reason why the inverter is offline.
+void Inverter::showError(TimePoint now, InverterStatus& status) const
+{
+  const bool refused = command_error_.id() != 0 &&
+                       (!status.communication_error || exchange_error_ == 0 || command_error_.countsWhileOffline());
+  if (!refused)
+  {
+    status.error_id = exchange_error_;
+    status.error_text = exchange_error_ == 0 ? "" : exchangeText();
+    return;
+  }
+  Obstacles now_there = obstacles();
+  now_there.locked = interlock.locked(now);
+  status.error_id = command_error_.id();
+  status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
+}
+
+/// In the drive's own words where it has answered.
+std::string Inverter::exchangeText() const
+{
+  const std::string text = drive.exceptionText(exchange_error_);
+  return text.empty() ? errorText(exchange_error_) : text;
+}
+
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
 {
-  command_error_ = error_id;
-  command_error_text_ = text;
+  command_error_.set(error_id, text, obstacles());
+}
+
+void Inverter::refuseForOther(std::uint16_t error_id)
+{
+  command_error_.setForOther(error_id);
 }
 
 void Inverter::acceptCommand()
 {
-  command_error_ = 0;
-  command_error_text_.clear();
+  command_error_.clear();
 }
 
 void Inverter::noteExchangeError(std::uint16_t error_id)
@@ -585,13 +622,33 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
   exchange_error_ = error_id;
 }
 
-std::vector<Finding> Inverter::errors() const
+std::string Inverter::offlineReason() const
+{
+  const std::string seen = record.text(drive);
+  return exchangeText() +
+         (seen.empty() || exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
+}
+
+std::string Inverter::offlineText(TimePoint now) const
+{
+  std::string text = "offline (" + hex(exchange_error_) + " " + offlineReason() + "; last answer ";
+  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
+  return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
+}
+
+/// Before the first complete status.
+std::string Inverter::silenceText() const
+{
+  const std::string seen = record.text(drive);
+  return seen.empty() ? "has not been asked yet" : "no complete status yet: " + seen + "; " + record.advice();
+}
+
+std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
-                                           "); check supply, wiring, station number and serial settings" });
+    findings.push_back({ Level::Error, offlineText(now) });
     return findings;
   }
   if (interlock.isFaulted())
@@ -605,11 +662,11 @@ std::vector<Finding> Inverter::errors() const
 
 std::vector<Finding> Inverter::findings(TimePoint now) const
 {
-  std::vector<Finding> findings = errors();
+  std::vector<Finding> findings = errors(now);
   const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
   if (!offline_ && !known_)
   {
-    warn("has not answered yet");
+    warn(silenceText());
   }
   for (const Finding& finding : settings.findings())
   {

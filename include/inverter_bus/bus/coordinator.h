@@ -215,7 +215,7 @@ private:
   bool repeat(int& tries, const wire::Reply& reply) const;
   void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
-  void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void wentOffline(TimePoint now, Inverter& inverter);
   void judgeRefresh(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);
   void publish(TimePoint now, const Inverter& inverter);

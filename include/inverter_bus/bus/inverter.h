@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/command_error.h"
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/link_record.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
 #include "inverter_bus/bus/scheduler.h"
@@ -96,6 +98,8 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  /// What came since the last complete status.
+  LinkRecord record;
 
   // --- link -------------------------------------------------------------------------------------------------------
   /// A valid reply came. Returns true if the inverter was offline or unknown before.
@@ -150,6 +154,8 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
+  /// What the log says when it goes offline.
+  std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
   /// After a complete refresh.
@@ -162,6 +168,8 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
+  /// As a member of a group that was refused for the sake of another one.
+  void refuseForOther(std::uint16_t error_id);
   void acceptCommand();
   void noteExchangeError(std::uint16_t error_id);
 
@@ -189,15 +197,19 @@ private:
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
-  std::vector<Finding> errors() const;
+  std::vector<Finding> errors(TimePoint now) const;
+  std::string exchangeText() const;
+  std::string offlineText(TimePoint now) const;
+  std::string silenceText() const;
+  Obstacles obstacles() const;
+  void showError(TimePoint now, InverterStatus& status) const;
 
   int offline_after_;
   bool known_ = false;  ///< a complete status has come since start or return
   bool offline_ = false;
   int failures_ = 0;
   std::uint16_t exchange_error_ = 0;
-  std::uint16_t command_error_ = 0;
-  std::string command_error_text_;
+  CommandError command_error_;
   TimePoint last_reply_;
   bool ever_answered_ = false;
   TimePoint silence_until_;

@@ -198,7 +198,7 @@ def lint_programs(build):
                       [word for name in ignored for word in ('--ignore', name)] + [ROOT])
     if shutil.which('shellcheck'):
         scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/install_dependencies', 'scripts/common.sh',
-                   '.ci/run']
+                   '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])

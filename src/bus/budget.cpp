@@ -132,7 +132,8 @@ Duration Budget::longestExchange() const
       longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
-  return longest;
+  // One that breaks off, or pauses, ends a pause later.
+  return longest + line_.patience();
 }
 
 Duration Budget::worstStop() const
@@ -219,11 +220,18 @@ Budget::Figures Budget::figures() const
   return figures;
 }
 
+std::string Budget::behindGateway() const
+{
+  return configuration_.bus.modbus_tcp ? " and up to " + milliseconds(seconds(configuration_.bus.gateway_timeout)) +
+                                             " for each inverter that does not answer"
+                                       : "";
+}
+
 std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
   findings.push_back({ Level::Ok, "bus budget: status cycle " + milliseconds(cycle()) + ", worst stop latency " +
-                                      milliseconds(worstStop()) +
+                                      milliseconds(worstStop()) + behindGateway() +
                                       " (plus the ramp), longest gap between two frames to "
                                       "an inverter " +
                                       milliseconds(longestGap()) });

@@ -10,25 +10,19 @@ namespace bus
 {
 namespace
 {
-/// Why a group was refused for all, told to a member that was not the reason.
-std::string otherText(std::uint16_t error_id)
+/// What lasts is told as it is; what passes, as something that was.
+std::string otherText(std::uint16_t error_id, const std::string& reasons)
 {
   switch (error_id)
   {
-    case ERROR_OUT_OF_RANGE:
-      return "a velocity of it was out of range";
     case ERROR_OFFLINE:
       return "an inverter of it was offline";
     case ERROR_CANCELLED:
       return "a stop of an inverter of it was under way";
     case ERROR_LOCKED:
       return "an inverter of it was locked";
-    case ERROR_NOT_ARMED:
-      return "an inverter of it was not armed";
-    case ERROR_NOT_OFFERED:
-      return "an inverter of it can't do what it was sent";
     default:
-      return errorText(error_id);
+      return reasons.empty() ? errorText(error_id) : reasons;
   }
 }
 }  // namespace
@@ -67,10 +61,10 @@ void CommandError::set(std::uint16_t error_id, const std::string& text, const Ob
   before_offline_ = false;
 }
 
-void CommandError::setForOther(std::uint16_t error_id)
+void CommandError::setForOther(std::uint16_t error_id, const std::string& reasons)
 {
   id_ = error_id;
-  text_ = "the group was refused: " + otherText(error_id);
+  text_ = "the group was refused: " + otherText(error_id, reasons);
   cause_ = Cause::Lasting;
   before_offline_ = false;
 }

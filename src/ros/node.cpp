@@ -102,7 +102,7 @@ void logEnd(int status, const bus::BusConfig& config, const std::vector<std::str
   else if (status != 0)
   {
     log(bus::Level::Error, "port " + config.port +
-                               " is in use by another program, tried for 15 s: end that program "
+                               " is in use by another program, tried for 30 s: end that program "
                                "or choose another port");
   }
   else

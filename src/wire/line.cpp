@@ -13,7 +13,8 @@ namespace
 {
 /// settle() gives up after this long: babble on the line cannot stop a stop.
 constexpr std::chrono::milliseconds LONGEST_SETTLING{ 100 };
-/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter).
+/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter, or the
+/// pause that is allowed for if that is longer).
 constexpr double REPLY_SLACK_CHARACTERS = 16.0;
 constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
 /// Station and function: from here on something is likelier to be a frame than noise.
@@ -136,7 +137,7 @@ bool Line::settle(Duration quiet)
   {
     // The rest of a late reply that an adapter delivers in pieces must not run into the next exchange.
     const bool half_a_frame = buffer_.size() >= LIKELY_FRAME;
-    const TimePoint rest = half_a_frame ? last_byte_at_ + timing_.patience(protocol_.gapCharacters()) : ready_at_;
+    const TimePoint rest = half_a_frame ? last_byte_at_ + patience() : ready_at_;
     result = receive(std::min(std::max(quiet_at(), rest), give_up));
     consumeIdle();
     result = result == ReceiveResult::Data && clock_.now() >= give_up ? ReceiveResult::Silence : result;
@@ -280,7 +281,8 @@ Line::Waiting Line::startWaiting(const Request& request, TimePoint sent_at)
     waiting.reply_length = protocol_.replyLength(request);
     const double characters = static_cast<double>(waiting.reply_length) + REPLY_SLACK_CHARACTERS;
     waiting.first_byte_deadline += heldBack(request) + request.reply_delay + request.response_timeout;
-    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + REPLY_SLACK;
+    const Duration slack = std::max<Duration>(REPLY_SLACK, patience());
+    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + slack;
   }
   return waiting;
 }
@@ -315,7 +317,7 @@ TimePoint Line::waitUntil(const Waiting& waiting) const
   {
     return waiting.first_byte_deadline;
   }
-  const TimePoint rest = last_byte_at_ + timing_.patience(protocol_.gapCharacters());
+  const TimePoint rest = last_byte_at_ + patience();
   // A reply that broke off or was damaged will not come again; a few stray bytes say nothing about the reply yet.
   const bool echo_begun = !buffer_.empty() && echo_.holds(buffer_);
   const bool reply_was_here =

@@ -28,8 +28,8 @@ class CommandError
 public:
   /// \p now what stood in the way when it was refused (locked is not asked for)
   void set(std::uint16_t error_id, const std::string& text, const Obstacles& now);
-  /// The whole group was refused for the sake of another member.
-  void setForOther(std::uint16_t error_id);
+  /// The whole group was refused for the sake of other members, for \p reasons (names and texts).
+  void setForOther(std::uint16_t error_id, const std::string& reasons);
   void clear();
   /// The inverter has gone offline: that is newer, and what counts.
   void wentOffline();

@@ -98,6 +98,8 @@ struct Item
   std::optional<unsigned> bit;
   /// Bits of the register that count (others are undefined on this drive).
   std::uint32_t mask = 0xFFFFFFFF;
+  /// A flag that is true whatever the masked value is, unless it is 0 (an error word).
+  bool nonzero = false;
   /// Raw value to meaning, where the drive counts otherwise than we do (direction: 2 means reverse = -1).
   std::map<std::uint32_t, int> values;
   /// Empty, or the name under which this item is unconfirmed.

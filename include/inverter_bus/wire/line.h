@@ -21,24 +21,29 @@ namespace wire
 class LineTiming
 {
 public:
-  /// \param baud_rate bits per second (behind a gateway: that of the line), > 0
+  /// A serial port of this machine. The longest pause inside a reply is 25 ms (16 ms of a USB adapter's latency timer
+  /// and some reserve), at low rates 18 characters: a 16550A whose FIFO reports up to 14 bytes at a time tells of the rest
+  /// after a silence of 4.
+  /// \param baud_rate bits per second, > 0
   /// \param bits_per_character start, data, parity and stop bits: 9 to 12
-  /// \param delivery longest pause that the way from the line to this program can put into a frame: 16 ms of a USB
-  /// adapter's latency timer and some reserve; more for a gateway
-  LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration delivery = std::chrono::milliseconds(25));
+  LineTiming(unsigned baud_rate, unsigned bits_per_character);
+  /// \param baud_rate behind a gateway: that of the line
+  /// \param pause longest that the way from the line to this program can put into a reply
+  LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration pause);
 
   /// Time of \p count characters on the wire.
   Duration characters(double count) const;
   /// Silence before a request: \p gap_characters; above 19200 baud a character counts as 0.5 ms, which makes the 1.75
   /// ms that Modbus over serial line V1.02, section 2.5.1.1 asks for in place of 3.5 characters.
   Duration gap(double gap_characters) const;
-  /// Silence after which the rest of a frame that has begun will not come any more.
+  /// Silence after which the rest of a frame that has begun will not come any more: the longest pause, and no less than
+  /// the gap.
   Duration patience(double gap_characters) const;
 
 private:
   double character_s_;
   bool fast_;
-  Duration delivery_;
+  Duration pause_;
 };
 
 /// A frame that passed the line, for the flight recorder.
@@ -150,6 +155,9 @@ public:
   Duration costUnanswered(const Request& request) const;
 
   const LineCounters& counters() const;
+  /// Longest pause inside a reply that is waited out.
+  Duration patience() const;
+
   const LineTiming& timing() const;
   bool echoFound() const;
   /// Late replies since the last call, refusals and a gateway's exceptions included.

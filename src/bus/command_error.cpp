@@ -132,10 +132,7 @@ std::string CommandError::text(const Obstacles& now, const std::string& offline_
   {
     return pastText();
   }
-  // An id of the exchange: the drive or the line failed the velocity, and may be well again by now.
-  const bool failed = id_ < ERROR_OUT_OF_RANGE;
-  return (failed ? "the last velocity was not carried out: " : "") + text_ +
-         (cause_ == Cause::Offline && !offline_reason.empty() ? ": " + offline_reason : "");
+  return text_ + (cause_ == Cause::Offline && !offline_reason.empty() ? ": " + offline_reason : "");
 }
 }  // namespace bus
 }  // namespace inverter_bus

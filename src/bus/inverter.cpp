@@ -59,7 +59,8 @@ bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, doubl
 }
 }  // namespace
 
-Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after)
+Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after,
+                   int retries)
   : index(index)
   , config(config)
   , drive(drive)
@@ -68,6 +69,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , stop(drive, config.node)
   , refresh(drive, config.node)
   , settings(drive, config.node)
+  , lost_writes(retries, offline_after)
   , offline_after_(offline_after)
 {
 }
@@ -80,6 +82,7 @@ bool Inverter::answered(const wire::Reply& reply)
   last_reply_ = reply.finished_at;
   ever_answered_ = true;
   failures_ = 0;
+  read_failed_ = false;
   exchange_error_ = 0;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
   probes = 0;
@@ -92,16 +95,17 @@ bool Inverter::answered(const wire::Reply& reply)
   return back;
 }
 
-bool Inverter::failed(TimePoint now, std::uint16_t error_id)
+bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
   if (now < silence_until_)
   {
     return false;
   }
   exchange_error_ = error_id;
+  read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
   const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
-  if (patience || offline_)
+  if (patience || !read_failed_ || offline_)
   {
     return false;
   }
@@ -133,11 +137,18 @@ void Inverter::goOffline(std::uint16_t error_id)
   operation_off_since_.reset();
   unexpected_motion_ = false;
   reset_active = false;
+  // From now on nothing of it is answered, and that is what users are told.
+  lost_writes.lower();
 }
 
 bool Inverter::offline() const
 {
   return offline_;
+}
+
+bool Inverter::needsRead() const
+{
+  return !offline_ && failures_ >= offline_after_ && !read_failed_;
 }
 
 bool Inverter::known() const
@@ -604,21 +615,37 @@ Obstacles Inverter::obstacles() const
   return obstacles;
 }
 
-/// A refused command is shown before a lost exchange, but not before the reason why the inverter is offline.
+/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
 void Inverter::showError(TimePoint now, InverterStatus& status) const
 {
-  const bool refused = command_error_.id() != 0 &&
-                       (!status.communication_error || exchange_error_ == 0 || command_error_.countsWhileOffline());
-  if (!refused)
+  const bool away = status.communication_error && exchange_error_ != 0;
+  if (away && !command_error_.countsWhileOffline())
   {
     status.error_id = exchange_error_;
-    status.error_text = exchange_error_ == 0 ? "" : exchangeText();
-    return;
+    status.error_text = exchangeText();
   }
-  Obstacles now_there = obstacles();
-  now_there.locked = interlock.locked(now);
-  status.error_id = command_error_.id();
-  status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
+  else if (lost_writes.raised())
+  {
+    status.error_id = wire::ERROR_TIMEOUT;
+    status.error_text = lost_writes.text();
+  }
+  else if (command_error_.id() != 0)
+  {
+    Obstacles now_there = obstacles();
+    now_there.locked = interlock.locked(now);
+    status.error_id = command_error_.id();
+    status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
+  }
+  else if (velocity_error_ != 0)
+  {
+    status.error_id = velocity_error_;
+    status.error_text = "the last velocity was not carried out: " + velocity_error_text_;
+  }
+  else if (exchange_error_ != 0)
+  {
+    status.error_id = exchange_error_;
+    status.error_text = exchangeText();
+  }
 }
 
 /// In the drive's own words where it has answered.
@@ -626,6 +653,18 @@ std::string Inverter::exchangeText() const
 {
   const std::string text = drive.exceptionText(exchange_error_);
   return text.empty() ? errorText(exchange_error_) : text;
+}
+
+void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
+{
+  velocity_error_ = error_id;
+  velocity_error_text_ = text;
+}
+
+void Inverter::velocityConfirmed()
+{
+  velocity_error_ = 0;
+  velocity_error_text_.clear();
 }
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
@@ -676,6 +715,14 @@ std::vector<Finding> Inverter::errors(TimePoint now) const
   {
     findings.push_back({ Level::Error, offlineText(now) });
     return findings;
+  }
+  if (lost_writes.raised())
+  {
+    findings.push_back(
+        { Level::Error,
+          lost_writes.text() + " (" + std::to_string(lost_writes.inARow()) +
+              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
+              "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
   }
   if (interlock.isFaulted())
   {

@@ -69,7 +69,7 @@ protected:
 
   const InverterConfig config_ = inverterConfig();
   const drive::Drive mx2_ = shipped("omron_mx2");
-  Inverter inverter_{ 0, config_, mx2_, 3 };
+  Inverter inverter_{ 0, config_, mx2_, 3, 1 };
   int time_ = 0;
 };
 

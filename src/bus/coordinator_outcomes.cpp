@@ -17,6 +17,9 @@ constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 // A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
 constexpr double PORT_WORKS_AFTER_S = 3.0;
 
+// Subject of the lines that tell the state of the port; no inverter's name has a space.
+const char* const PORT = "the port";
+
 bool alive(const wire::Reply& reply)
 {
   return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
@@ -66,7 +69,7 @@ void Coordinator::done(const wire::Reply& reply)
   inverter.noteExchange(reply.outcome);
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
-    log(Level::Ok, inverter.config.name + ": online");
+    log(Level::Ok, inverter.config.name + ": online", inverter.config.name);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))
@@ -111,6 +114,11 @@ void Coordinator::done(const wire::Reply& reply)
       doneSetting(current, reply);
       break;
     default:
+      if (inverter.offline())
+      {
+        // Not the port that was gone before.
+        inverter.noteExchangeError(reply.error_id);
+      }
       finishExchange(current, reply, false);
       break;
   }
@@ -145,7 +153,7 @@ void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t e
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id));
+    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id), inverter.config.name);
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -508,7 +516,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
       sign_of_life.finished_at = now;
       sign_of_life.turnaround = std::min(*late.delay, seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
-      log(Level::Ok, inverter->config.name + ": online (its reply came late)");
+      log(Level::Ok, inverter->config.name + ": online (its reply came late)", inverter->config.name);
     }
   }
 }
@@ -539,7 +547,7 @@ void Coordinator::portOpened(TimePoint now)
     port_complained_ = false;
     port_error_.clear();
     last_error_ = 0;
-    log(Level::Ok, "port " + configuration_.bus.port + " is open");
+    log(Level::Ok, "port " + configuration_.bus.port + " is open", PORT);
   }
   for (const auto& inverter : inverters_)
   {
@@ -556,7 +564,7 @@ void Coordinator::portWorks()
     port_failing_ = false;
     port_complained_ = false;
     port_error_.clear();
-    log(Level::Ok, "port " + configuration_.bus.port + " works again");
+    log(Level::Ok, "port " + configuration_.bus.port + " works again", PORT);
   }
 }
 
@@ -569,7 +577,7 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
-        error + (in_use ? "; trying again for a while" : "; the node keeps trying"));
+        error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);
     portLost(now);
   }
 }
@@ -582,7 +590,7 @@ void Coordinator::portLost(TimePoint now)
     port_failing_ = !port_works_;
     port_error_ = "port " + configuration_.bus.port +
                   (port_failing_ ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone");
-    log(Level::Error, port_error_ + "; the node keeps trying");
+    log(Level::Error, port_error_ + "; the node keeps trying", PORT);
     port_complained_ = true;
   }
   connected_ = false;

@@ -22,9 +22,9 @@ std::string rounded(double value, const char* format)
 }
 }  // namespace
 
-void Coordinator::log(Level level, const std::string& text)
+void Coordinator::log(Level level, const std::string& text, const std::string& subject)
 {
-  outputs_.log.push_back({ level, text });
+  outputs_.log.push_back({ level, text, subject });
 }
 
 void Coordinator::publish(TimePoint now, const Inverter& inverter)
@@ -83,8 +83,7 @@ Report Coordinator::report(TimePoint now) const
   if (!report.bus.connected)
   {
     report.findings.push_back(
-        { Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" : port_error_) +
-                            "; plug it in or check its name, rights and settings" });
+        { Level::Error, port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" : port_error_ });
   }
   if (counters_.foreign_frames > 0 && now - foreign_at_ < seconds(FOREIGN_SHOWN_S))
   {

@@ -595,6 +595,12 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
 std::vector<Finding> Inverter::errors() const
 {
   std::vector<Finding> findings;
+  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+                                           "), since the port is not open: what to do about it is told of the bus" });
+    return findings;
+  }
   if (offline_)
   {
     findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +

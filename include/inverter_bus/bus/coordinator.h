@@ -220,7 +220,8 @@ private:
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);
   void publish(TimePoint now, const Inverter& inverter);
   BusStatus busStatus(TimePoint now) const;
-  void log(Level level, const std::string& text);
+  /// \p subject see Finding.
+  void log(Level level, const std::string& text, const std::string& subject = "");
 
   const Configuration& configuration_;
   const wire::Line& line_;

@@ -15,6 +15,8 @@ constexpr double OPEN_PERIOD_S = 0.2;
 // Every try moves the RTS line of whoever has the port.
 constexpr double IN_USE_PERIOD_S = 1.0;
 constexpr double IN_USE_PATIENCE_S = 30.0;
+// Somebody may set the adapter while the bus runs.
+constexpr double ADAPTER_PERIOD_S = 5.0;
 }  // namespace
 
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
@@ -58,6 +60,7 @@ TimePoint BusLoop::openPort()
   {
     ever_opened_ = true;
     coordinator_.portOpened(clock_.now());
+    next_look_ = now;
     return now;
   }
   coordinator_.portMissing(now, error, in_use);
@@ -78,6 +81,19 @@ void BusLoop::judgePatience(TimePoint now, bool in_use)
   given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
 }
 
+void BusLoop::lookAtAdapter()
+{
+  const TimePoint now = clock_.now();
+  if (now < next_look_)
+  {
+    return;
+  }
+  next_look_ = now + seconds(ADAPTER_PERIOD_S);
+  const std::optional<wire::AdapterLatency> latency = line_.adapterLatency();
+  const std::lock_guard<std::mutex> guard(mutex_);
+  coordinator_.noteAdapter(latency);
+}
+
 /// One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
 void BusLoop::lose()
 {
@@ -90,6 +106,7 @@ TimePoint BusLoop::step()
   {
     return openPort();
   }
+  lookAtAdapter();
   // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
   const bool there = line_.settle();
   std::optional<Coordinator::Exchange> exchange;

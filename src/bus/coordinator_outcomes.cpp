@@ -531,6 +531,11 @@ void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bo
   echo_found_ = echo_found;
 }
 
+void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
+{
+  adapter_.note(latency);
+}
+
 void Coordinator::portOpened(TimePoint now)
 {
   connected_ = true;

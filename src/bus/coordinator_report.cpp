@@ -92,6 +92,10 @@ Report Coordinator::report(TimePoint now) const
                                 "master (" +
                                     std::to_string(counters_.foreign_frames) + " so far)" });
   }
+  if (const auto finding = adapter_.finding())
+  {
+    report.findings.push_back(*finding);
+  }
   if (scheduler_->pauseWasCut())
   {
     report.findings.push_back({ Level::Warn,
@@ -112,6 +116,11 @@ Report Coordinator::report(TimePoint now) const
   report.values.emplace_back("worst stop latency, computed",
                              rounded(toSeconds(budget_.worst_stop + longestReplyDelay()) * 1e3, "%.1f ms"));
   report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
+  if (!configuration_.bus.gateway)
+  {
+    report.values.emplace_back("adapter latency", adapter_.text());
+  }
+  report.values.emplace_back("longest pause in a reply", rounded(toSeconds(line_.patience()) * 1e3, "%.1f ms"));
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));
   for (const auto& inverter : inverters_)

@@ -120,6 +120,11 @@ public:
     return ReceiveResult::Gone;
   }
 
+  std::optional<AdapterLatency> adapterLatency() const override
+  {
+    return wire::adapterLatency(settings_.device);
+  }
+
 private:
   OpenResult openAndLock(std::string& error)
   {

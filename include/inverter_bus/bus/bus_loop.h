@@ -29,6 +29,7 @@ public:
 private:
   TimePoint openPort();
   void judgePatience(TimePoint now, bool in_use);
+  void lookAtAdapter();
   void lose();
 
   Coordinator& coordinator_;
@@ -36,6 +37,7 @@ private:
   wire::Clock& clock_;
   std::mutex& mutex_;
   TimePoint next_open_;
+  TimePoint next_look_;
   std::optional<TimePoint> in_use_since_;
   bool ever_opened_ = false;
   bool given_up_ = false;

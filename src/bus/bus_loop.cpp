@@ -12,6 +12,8 @@ namespace
 {
 // An adapter that is plugged in again is found within this time.
 constexpr double OPEN_PERIOD_S = 0.2;
+// A connection that its other end has closed is tried again so often, for as long as motors run on.
+constexpr double RESUME_PERIOD_S = 0.05;
 // Every try moves the RTS line of whoever has the port.
 constexpr double IN_USE_PERIOD_S = 1.0;
 constexpr double IN_USE_PATIENCE_S = 30.0;
@@ -37,36 +39,49 @@ void BusLoop::close()
 TimePoint BusLoop::openPort()
 {
   const TimePoint now = clock_.now();
-  // Statuses go on at their pace, however seldom the port is tried.
-  const TimePoint tick = now + seconds(OPEN_PERIOD_S);
-  if (now < next_open_)
+  TimePoint not_before;
   {
+    // Statuses go on at their pace, however seldom the port is tried.
     const std::lock_guard<std::mutex> guard(mutex_);
     coordinator_.tick(now);
-    return std::min(next_open_, tick);
+    not_before = coordinator_.resuming() ? now : std::max(next_open_, coordinator_.openNotBefore());
+  }
+  if (now < not_before && !opening_)
+  {
+    return std::min(not_before, now + seconds(OPEN_PERIOD_S));
   }
   std::string error;
   const wire::OpenResult result = line_.open(error);
-  const bool in_use = result == wire::OpenResult::InUse;
-  next_open_ = now + seconds(in_use ? IN_USE_PERIOD_S : OPEN_PERIOD_S);
+  opening_ = result == wire::OpenResult::Pending;
+  if (!opening_)
+  {
+    next_open_ = now + seconds(result == wire::OpenResult::InUse ? IN_USE_PERIOD_S : OPEN_PERIOD_S);
+  }
   const std::lock_guard<std::mutex> guard(mutex_);
-  if (result == wire::OpenResult::Pending)
+  return noteOpening(result, error);
+}
+
+/// How an attempt to open the port ended, and when the next round is.
+TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error)
+{
+  const TimePoint now = clock_.now();
+  switch (result)
   {
-    next_open_ = now;
-    coordinator_.tick(clock_.now());
-    return now;
+    case wire::OpenResult::Opened:
+      ever_opened_ = true;
+      coordinator_.portOpened(now);
+      next_look_ = now;
+      return now;
+    case wire::OpenResult::Pending:
+      coordinator_.portPending(now);
+      return now;
+    default:
+      break;
   }
-  if (result == wire::OpenResult::Opened)
-  {
-    ever_opened_ = true;
-    coordinator_.portOpened(clock_.now());
-    next_look_ = now;
-    return now;
-  }
+  const bool in_use = result == wire::OpenResult::InUse;
   coordinator_.portMissing(now, error, in_use);
-  coordinator_.tick(now);
   judgePatience(now, in_use);
-  return std::min(next_open_, tick);
+  return now + seconds(coordinator_.resuming() ? RESUME_PERIOD_S : OPEN_PERIOD_S);
 }
 
 /// A port that was never ours may stay somebody else's; one that was will come back.
@@ -94,10 +109,34 @@ void BusLoop::lookAtAdapter()
   coordinator_.noteAdapter(latency);
 }
 
-/// One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
-void BusLoop::lose()
+/// Reasons of ours to give up an open port and open it anew; true if there was one.
+bool BusLoop::reopen()
 {
-  line_.close();
+  bool abandon = false;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    const TimePoint now = clock_.now();
+    if (coordinator_.telnetOver(now))
+    {
+      coordinator_.closedForTelnet(now);
+      abandon = true;
+    }
+    else if (coordinator_.renewalDue(now))
+    {
+      coordinator_.renewing(now);
+      abandon = true;
+    }
+    else if (!line_.mustReopen().empty())
+    {
+      coordinator_.reopening(now);
+      abandon = true;
+    }
+  }
+  if (abandon)
+  {
+    line_.abandon();
+  }
+  return abandon;
 }
 
 TimePoint BusLoop::step()
@@ -109,6 +148,10 @@ TimePoint BusLoop::step()
   lookAtAdapter();
   // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
   const bool there = line_.settle();
+  if (there && reopen())
+  {
+    return clock_.now();
+  }
   std::optional<Coordinator::Exchange> exchange;
   TimePoint wake;
   {
@@ -121,7 +164,8 @@ TimePoint BusLoop::step()
     coordinator_.noteLine(now, line_.counters(), line_.echoFound());
     if (!there)
     {
-      coordinator_.portLost(now);
+      coordinator_.portClosed(now);
+      coordinator_.tick(now);
     }
     else if ((exchange = coordinator_.next(now, wake)))
     {
@@ -130,8 +174,8 @@ TimePoint BusLoop::step()
   }
   if (!there)
   {
-    lose();
-    return next_open_;
+    line_.close();
+    return clock_.now();
   }
   if (!exchange)
   {
@@ -145,7 +189,8 @@ TimePoint BusLoop::step()
   }
   if (reply.outcome == wire::Outcome::PortLost)
   {
-    lose();
+    // One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
+    line_.close();
   }
   return clock_.now();
 }

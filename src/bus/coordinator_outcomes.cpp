@@ -17,9 +17,6 @@ constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 // A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
 constexpr double PORT_WORKS_AFTER_S = 3.0;
 
-// Subject of the lines that tell the state of the port; no inverter's name has a space.
-const char* const PORT = "the port";
-
 bool alive(const wire::Reply& reply)
 {
   return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
@@ -50,11 +47,28 @@ void Coordinator::done(const wire::Reply& reply)
   }
   const Current current = *current_;
   current_.reset();
-  if (reply.outcome == wire::Outcome::PortLost)
+  if (reply.outcome != wire::Outcome::PortLost)
+  {
+    ended(current, reply);
+    return;
+  }
+  if (!resumes(reply.finished_at, current.inverter))
   {
     portLost(reply.finished_at);
     return;
   }
+  // Lost for its station alone (contract, 8.9).
+  wire::Reply lost = reply;
+  lost.outcome = wire::Outcome::Timeout;
+  lost.error_id = wire::ERROR_TIMEOUT;
+  lost.connection_closed = true;
+  ended(current, lost);
+}
+
+/// The end of an exchange over a port that is there, or soon is again.
+void Coordinator::ended(const Current& current, const wire::Reply& reply)
+{
+  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::Timeout || reply.finished_at - opened_at_ > seconds(PORT_WORKS_AFTER_S))
   {
     portWorks();
@@ -67,6 +81,11 @@ void Coordinator::done(const wire::Reply& reply)
   }
   Inverter& inverter = *inverters_[current.inverter];
   inverter.noteExchange(reply.outcome);
+  if (current.request.expects_reply)
+  {
+    noteLink(reply);
+    noteConnection(reply.finished_at, current, reply);
+  }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
     log(Level::Ok, inverter.config.name + ": online", inverter.config.name);
@@ -137,11 +156,16 @@ void Coordinator::finishExchange(const Current& current, const wire::Reply& repl
     return;
   }
   scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, alive(reply));
+  if (current.pick.probe && reply.outcome != wire::Outcome::Ok)
+  {
+    scheduler_->chargeProbe(reply.finished_at, probePrice(current, reply));
+  }
 }
 
 void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
-  if (inverter.failed(now, error_id))
+  // Behind an older request that the gateway still works on it says nothing of this inverter (contract, 8.16).
+  if (!behind_another_ && inverter.failed(now, error_id))
   {
     wentOffline(now, inverter, error_id);
   }
@@ -173,6 +197,27 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     // A fresh command took the place of a stop by 0 while its frame was on the wire: write all words anew.
     inverter.movement.forgetWords();
+    return;
+  }
+  const bool wrote = !current.resync && !inverter.stop.written();
+  if (reply.connection_closed && !inverter.offline())
+  {
+    // It counts no try: the same frame goes first over the next connection.
+    noteLost(reply.finished_at, inverter, reply.error_id);
+    return;
+  }
+  if (gateway_.active() && alive(reply))
+  {
+    const auto latency = inverter.stop.answered(reply.finished_at);
+    if (latency && !current.pick.probe)
+    {
+      noteStopLatency(*latency);
+    }
+  }
+  if (wrote && gateway_.motionUntil(reply.sent_at, current.inverter))
+  {
+    inverter.stop.writeOnceMore();
+    inverter.interlock.stopRequested();
     return;
   }
   const StopJob::Progress progress = inverter.stop.done(reply, current.may_be_late);
@@ -497,24 +542,35 @@ void Coordinator::configureBlock(TimePoint now, Inverter& inverter)
 
 void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
+  link_.answered();
+  const auto request = gateway_.answeredLate(now, late.ticket);
+  const bool alone = !gateway_.active() || (request && request->alone);
+  if (request && request->alone && inverters_[request->inverter]->offline())
+  {
+    scheduler_->chargeProbe(now, gateway_.block());
+  }
+  if (request && request->risk == GatewayRisk::Stop)
+  {
+    const auto latency = inverters_[request->inverter]->stop.answered(now);
+    noteStopLatency(latency.value_or(Duration::zero()));
+  }
   for (const auto& inverter : inverters_)
   {
-    if (inverter->config.node != late.station)
+    if (inverter->config.node != late.station || late.gateway_code != 0)
     {
       continue;
     }
-    if (!late.delay)
+    if (late.delay && alone)
     {
-      // A gateway has given it up, or it is not clear what it answers.
-      continue;
+      inverter->lateReply(*late.delay);
     }
-    inverter->lateReply(*late.delay);
     if (inverter->offline())
     {
       wire::Reply sign_of_life;
       sign_of_life.outcome = wire::Outcome::Ok;
       sign_of_life.finished_at = now;
-      sign_of_life.turnaround = std::min(*late.delay, seconds(inverter->config.response_timeout));
+      sign_of_life.turnaround =
+          std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
       log(Level::Ok, inverter->config.name + ": online (its reply came late)", inverter->config.name);
     }
@@ -546,8 +602,12 @@ void Coordinator::portOpened(TimePoint now)
     ++reconnects_;
   }
   ever_opened_ = true;
-  scheduler_->restartCycle(now);
-  if (!port_failing_)
+  link_.opened(now);
+  const bool same = connection_.resuming();
+  // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
+  scheduler_->restartCycle(now, !same && connection_.closedUnused() == 0);
+  connection_.opened(now, onlineInverters());
+  if (!port_failing_ && !same)
   {
     port_complained_ = false;
     port_error_.clear();
@@ -575,6 +635,11 @@ void Coordinator::portWorks()
 
 void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_use)
 {
+  if (connection_.resuming() && connection_.notOpen(now) == ConnectionWatch::Verdict::Resume)
+  {
+    return;
+  }
+  connected_ = false;
   last_error_ = wire::ERROR_PORT_LOST;
   port_failing_ = false;
   port_error_ = error;
@@ -589,27 +654,39 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
 
 void Coordinator::portLost(TimePoint now)
 {
-  current_.reset();
-  if (connected_ && !port_failing_)
+  const std::string& port = configuration_.bus.port;
+  const bool unused = !port_works_;
+  if (unused && configuration_.bus.gateway)
   {
-    port_failing_ = !port_works_;
-    port_error_ = "port " + configuration_.bus.port +
-                  (port_failing_ ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone");
+    const std::string words = line_.peerWords();
+    portFails(now, "port " + port + " is closed by its other end as soon as it is open" +
+                       (words.empty() ? "" : ", which says '" + words + "'") +
+                       ": another client may hold it, or it serves another protocol mode");
+    return;
+  }
+  portFails(now, "port " + port +
+                     (unused                       ? " can be opened, but fails in use: see dmesg, check the adapter"
+                      : configuration_.bus.gateway ? " is gone"
+                                                   : " is gone: plug it in"));
+}
+
+/// \p error says what is wrong with it, once.
+void Coordinator::portFails(TimePoint now, const std::string& error)
+{
+  current_.reset();
+  connection_.lost();
+  gateway_.connectionEnded(now);
+  if (connected_ && !(port_failing_ && port_error_ == error))
+  {
+    port_failing_ = !port_works_ || line_.telnetFound();
+    port_error_ = error;
     log(Level::Error, port_error_ + "; the node keeps trying", PORT);
     port_complained_ = true;
   }
   connected_ = false;
   last_error_ = wire::ERROR_PORT_LOST;
   broadcast_due_ = false;
-  for (const auto& inverter : inverters_)
-  {
-    if (!inverter->offline())
-    {
-      inverter->goOffline(wire::ERROR_PORT_LOST);
-      wentOffline(now, *inverter, wire::ERROR_PORT_LOST);
-    }
-    inverter->noteExchangeError(wire::ERROR_PORT_LOST);
-  }
+  loseEverybody(now, wire::ERROR_PORT_LOST);
 }
 
 // --- shutdown --------------------------------------------------------------------------------------------------------

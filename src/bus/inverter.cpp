@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -34,14 +35,6 @@ std::string listed(const std::vector<int>& codes)
     text += (text.empty() ? "" : ", ") + std::to_string(code);
   }
   return text;
-}
-
-std::string milliseconds(Duration duration)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << toSeconds(duration) * 1e3 << " ms";
-  return text.str();
 }
 
 std::string hex(std::uint16_t value)
@@ -106,7 +99,9 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id)
     return false;
   }
   exchange_error_ = error_id;
-  if (++failures_ < offline_after_ || offline_)
+  // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
+  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
+  if (patience || offline_)
   {
     return false;
   }
@@ -128,6 +123,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
   interlock.offline();
+  stop.forgetConfirmation();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -146,6 +142,11 @@ bool Inverter::offline() const
 bool Inverter::known() const
 {
   return known_;
+}
+
+bool Inverter::everKnown() const
+{
+  return ever_known_;
 }
 
 bool Inverter::unreadSinceReturn() const
@@ -261,9 +262,15 @@ void Inverter::noteExchange(wire::Outcome outcome)
     return;
   }
   run_proven_ = false;
-  if (outcome != wire::Outcome::Exception && drive.wears("frequency"))
+  if (outcome == wire::Outcome::Exception)
   {
-    // A short power cut may be behind it, after which the drive writes set-points to its EEPROM again.
+    return;
+  }
+  // A short power cut may be behind it.
+  refresh.suspectRestart();
+  if (drive.wears("frequency"))
+  {
+    // After one the drive writes set-points to its EEPROM again.
     settings.connectAgain();
   }
 }
@@ -381,23 +388,22 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
-  const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
+  const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
   const bool new_trip = faulted && !interlock.isFaulted();
   judgement.tripped = new_trip || early_trip_;
   early_trip_ = false;
   interlock.faulted(faulted);
   if (judgement.tripped)
   {
-    const std::uint16_t code = monitor.fault_code.value_or(0);
-    judgement.trip_text =
-        "trip " + std::to_string(code) + ": " + (code == 0 ? std::string("no reason given") : drive.faultText(code));
+    judgement.trip_text = drive.tripText(monitor);
     judgement.stop_reason = new_trip ? judgement.trip_text : std::string();
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
-  judgeRestart(monitor, judgement);
+  judgeRestart(monitor, refresh.freshSentAt(), judgement);
   compareMovement(now, monitor);
   if (movement.runConfirmed() && now - command_source_at_ >= seconds(COMMAND_SOURCE_PERIOD_S))
   {
@@ -410,14 +416,27 @@ Judgement Inverter::judge(TimePoint now)
 }
 
 /// The drive says that it has forgotten what it was told since its last return.
-void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
+void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
 {
-  if (!monitor.restarted.value_or(false) || !settings.connected())
+  if (!monitor.restarted || !settings.connected())
   {
     return;
   }
-  settings.restart();
+  if (!*monitor.restarted)
+  {
+    no_restart_until_ = sent_at;
+    return;
+  }
   refresh.restartNoted();
+  if (movement.runConfirmed() && no_restart_until_ < movement.runChangedAt() && !stop.pending())
+  {
+    // It may have restarted before it got the RUN that is in force. If that is gone, the next read shows it.
+    settings.connectAgain();
+    refresh.askForRun();
+    run_proven_ = false;
+    return;
+  }
+  settings.restart();
   // What was selected for its block read may count only now.
   block_note_.clear();
   refresh.useBlock(std::nullopt);
@@ -432,15 +451,15 @@ Judgement Inverter::judgeWords(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& words = refresh.words();
-  if (words.faulted.value_or(false) && !interlock.isFaulted())
+  if (words.tripped().value_or(false) && !interlock.isFaulted())
   {
     interlock.faulted(true);
     early_trip_ = true;
-    judgement.stop_reason = "the drive has tripped";
+    judgement.stop_reason = words.unknown_trip ? drive.tripText(words) : "the drive has tripped";
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
-  judgeRestart(words, judgement);
+  judgeRestart(words, refresh.wordsSentAt(), judgement);
   return judgement;
 }
 
@@ -609,9 +628,11 @@ std::vector<Finding> Inverter::errors() const
   }
   if (interlock.isFaulted())
   {
-    const std::uint16_t code = refresh.fresh().fault_code.value_or(0);
-    findings.push_back({ Level::Error, "tripped: " + std::to_string(code) + " " + drive.faultText(code) +
-                                           "; remove the cause, then call reset" });
+    const drive::Monitor& told = refresh.fresh();
+    const std::uint16_t code = told.fault_code.value_or(0);
+    const std::string why =
+        told.unknown_trip ? drive.tripText(told) : std::to_string(code) + " " + drive.faultText(code);
+    findings.push_back({ Level::Error, "tripped: " + why + "; remove the cause, then call reset" });
   }
   return findings;
 }
@@ -650,9 +671,13 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + milliseconds(latest_late_reply_) +
+    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
          " after its request; a response_timeout above that "
          "would have caught it");
+  }
+  for (const std::string& mistake : drive.profile().mistakes)
+  {
+    warn("left out: " + mistake);
   }
   if (!drive.profile().unconfirmed.empty())
   {
@@ -709,11 +734,11 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("drive", drive.profile().name);
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? milliseconds(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", milliseconds(slowest_reply_));
+                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", milliseconds(settings.replyDelay()));
+  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));
@@ -741,10 +766,11 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
-                 !monitor.faulted.value_or(false);
+                 !monitor.tripped().value_or(false);
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();
+  view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = refresh_not_before;
   view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now && setting_not_before <= now;
   view.serve_by = serveBy(deadline_margin);

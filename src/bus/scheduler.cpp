@@ -13,7 +13,7 @@ namespace
 {
 // Contract, rule 3.3: three attempts at once, then every second exchange at most.
 constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
-// A flood of stops: so many exchanges, then a read-back waits for one of another kind.
+// A flood of stops: after so many exchanges, a read-back or a needless stop alternates with exchanges of another kind.
 constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 // Other exchanges between two frames of a stop that insists.
 constexpr std::uint64_t INSISTING_SPACING = 1;
@@ -22,13 +22,16 @@ constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
 // A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.
 constexpr unsigned LONE_COMMANDS_IN_A_ROW = 3;
 constexpr double LONGEST_SLEEP_S = 0.25;
+// Contract, 8.8: each offline inverter at most so often.
+constexpr double PROBE_PERIOD_S = 0.5;
 }  // namespace
 
 Scheduler::Scheduler(const Settings& settings)
   : settings_(settings)
   , stop_pending_(settings.inverters, false)
   , last_stop_exchange_(settings.inverters, 0)
-  , silent_at_deadline_(settings.inverters, false)
+  , silent_at_deadline_(settings.inverters, 0)
+  , last_probe_(settings.inverters)
 {
 }
 
@@ -172,8 +175,9 @@ const Scheduler::Ticket* Scheduler::firstReady(TimePoint now, bool urgent_only) 
 
 // --- decisions -------------------------------------------------------------------------------------------------------
 
-Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
+Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, const Gate& gate)
 {
+  bare_probes_ = gate.bare_probes;
   for (std::size_t index = 0; index < views.size(); ++index)
   {
     stop_pending_[index] = views[index].stop_pending;
@@ -182,7 +186,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
   {
     half_refreshed_.reset();
   }
-  Pick pick = choose(now, views);
+  Pick pick = gate.stops_only ? chooseBehindGateway(now, views, gate) : choose(now, views);
   if (pick.what == Pick::What::Nothing)
   {
     return pick;
@@ -191,8 +195,9 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
   // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
   const bool goes_on = pick.what == Pick::What::Refresh && half_refreshed_ == pick.inverter;
   deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
-  stops_in_a_row_ = pick.what == Pick::What::Stop ? stops_in_a_row_ + 1 : 0;
-  if (pick.what == Pick::What::Stop)
+  const bool stop = pick.what == Pick::What::Stop;
+  stops_in_a_row_ = stop ? stops_in_a_row_ + 1 : let_through_ ? stops_in_a_row_ : 0;
+  if (stop)
   {
     bookStop(pick, views);
   }
@@ -201,13 +206,18 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
 
 Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 {
-  if (auto stop = pickStop(views, false))
+  if (auto stop = pickStop(now, views, false))
   {
-    // Who stops again and again must not blind the driver: not a stop's write, but its read-back lets another one through.
-    const bool gives_way = views[stop->inverter].stop_written && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
+    // Who stops again and again must not blind the driver: not the write of a stop that takes RUN off, but its read-back
+    // and one that only repeats it let another exchange through.
+    const InverterView& view = views[stop->inverter];
+    const bool may_wait = view.stop_written || view.stop_repeats;
+    const bool gives_way = may_wait && !let_through_ && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
     const auto other = gives_way ? chooseBehindStops(now, views) : std::nullopt;
+    let_through_ = other.has_value();
     return other ? *other : *stop;
   }
+  let_through_ = false;
   if (auto urgent = pickCommand(now, true))
   {
     return *urgent;
@@ -217,12 +227,28 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
     return *other;
   }
   // A live drive's stop that insists lets something else through; if there is nothing else, it goes on.
-  if (auto stop = pickStop(views, true))
+  if (auto stop = pickStop(now, views, true))
   {
     return *stop;
   }
   const auto late = pickDeadline(now, views);
   return late ? *late : nothing(now, views);
+}
+
+/// The gateway still works on a request that was lost: whatever follows it would wait in there.
+Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate)
+{
+  if (const auto stop = pickStop(now, views, true))
+  {
+    return *stop;
+  }
+  if (const auto deadline = pickDeadline(now, views))
+  {
+    return *deadline;
+  }
+  Pick pick = nothing(now, views);
+  pick.wake = gate.until > now ? std::min(pick.wake, gate.until) : pick.wake;
+  return pick;
 }
 
 /// Everything but stops and what wants to stop.
@@ -281,7 +307,7 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
   return refresh ? refresh : background;
 }
 
-std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views, bool nothing_else) const
+std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const
 {
   using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
   std::optional<Key> best;
@@ -292,7 +318,7 @@ std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views, 
     const bool at_once = view.offline ? view.stop_attempts == 0 : view.stop_attempts < STOP_ATTEMPTS_AT_ONCE;
     const bool spaced = exchanges_ - last_insisting_exchange_ >= INSISTING_SPACING || last_insisting_exchange_ == 0;
     const bool insisting = !view.offline && (spaced || nothing_else);
-    if (!view.stop_pending || !(at_once || insisting))
+    if (!view.stop_pending || view.stop_not_before > now || !(at_once || insisting))
     {
       continue;
     }
@@ -337,7 +363,8 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
 
 std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
 {
-  // One that did not answer when its time came lets the others go before it is tried again.
+  // One that did not answer when its time came lets the others go before it is tried again; several such take turns, since
+  // the time of one that never answers never moves.
   const auto key = [&](std::size_t index) {
     return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by);
   };
@@ -345,7 +372,8 @@ std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<Inv
   for (std::size_t index = 0; index < views.size(); ++index)
   {
     const InverterView& view = views[index];
-    if (view.offline || !view.serve_by || *view.serve_by > now || view.refresh_not_before > now)
+    const bool due = view.serve_by && *view.serve_by <= now && view.refresh_not_before <= now;
+    if (view.offline || !due || view.refresh_unanswered)
     {
       continue;
     }
@@ -375,7 +403,7 @@ std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<Invert
   for (std::size_t step = 0; step < views.size(); ++step)
   {
     const std::size_t index = (probe_cursor_ + step) % views.size();
-    if (views[index].offline && views[index].refresh_not_before <= now)
+    if (mayProbe(now, views[index], index))
     {
       Pick pick;
       pick.what = views[index].stop_pending ? Pick::What::Stop : Pick::What::Probe;
@@ -385,6 +413,13 @@ std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<Invert
     }
   }
   return std::nullopt;
+}
+
+bool Scheduler::mayProbe(TimePoint now, const InverterView& view, std::size_t index) const
+{
+  const bool rested = last_probe_[index] == TimePoint() || now - last_probe_[index] >= seconds(PROBE_PERIOD_S);
+  const bool allowed = view.stop_pending ? view.stop_not_before <= now : bare_probes_;
+  return view.offline && view.refresh_not_before <= now && rested && allowed;
 }
 
 bool Scheduler::takesPart(const InverterView& view) const
@@ -472,9 +507,12 @@ Pick Scheduler::nothing(TimePoint now, const std::vector<InverterView>& views) c
   };
   wakeAt(pause_until_);
   wakeAt(next_probe_);
-  for (const InverterView& view : views)
+  for (std::size_t index = 0; index < views.size(); ++index)
   {
+    const InverterView& view = views[index];
     wakeAt(view.refresh_not_before);
+    wakeAt(view.stop_pending ? view.stop_not_before : TimePoint());
+    wakeAt(view.offline ? last_probe_[index] + seconds(PROBE_PERIOD_S) : TimePoint());
     if (view.serve_by)
     {
       wakeAt(*view.serve_by);
@@ -494,8 +532,8 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
   if (pick.probe)
   {
     probe_cursor_ = pick.inverter + 1;
-    const Duration cost = answered ? Duration::zero() : end - start;
-    next_probe_ = end + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
+    last_probe_[pick.inverter] = end;
+    chargeProbe(end, answered ? Duration::zero() : end - start);
   }
   switch (pick.what)
   {
@@ -518,7 +556,7 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
         refreshed_in_cycle_ = true;
         cursor_ += more ? 0 : 1;
       }
-      silent_at_deadline_[pick.inverter] = !answered;
+      silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
       // A repeat has no right to the next exchange: another drive's time may come meanwhile.
       noteHalfRefresh(pick, more && answered);
       break;
@@ -529,6 +567,11 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
     default:
       break;
   }
+}
+
+void Scheduler::chargeProbe(TimePoint now, Duration cost)
+{
+  next_probe_ = now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
 }
 
 void Scheduler::noteHalfRefresh(const Pick& pick, bool more)
@@ -566,11 +609,15 @@ std::uint64_t Scheduler::exchanges() const
   return exchanges_;
 }
 
-void Scheduler::restartCycle(TimePoint now)
+void Scheduler::restartCycle(TimePoint now, bool probes_at_once)
 {
   cycle_open_ = false;
   pause_until_ = now;
-  next_probe_ = now;
+  if (probes_at_once)
+  {
+    next_probe_ = now;
+    std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
+  }
 }
 }  // namespace bus
 }  // namespace inverter_bus

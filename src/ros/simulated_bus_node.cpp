@@ -14,6 +14,7 @@
 #include <ros/ros.h>
 
 #include "inverter_bus/InjectFault.h"
+#include "inverter_bus/ros/command_line.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "inverter_bus/simulation/bus_runner.h"
 #include "inverter_bus/simulation/simulated_bus.h"
@@ -21,6 +22,12 @@
 namespace
 {
 namespace sim = inverter_bus::simulation;
+
+const char* const USAGE =
+    "usage: simulated_bus_node [--help] [__name:=NAME] [_link:=PATH] [_PARAMETER:=VALUE] [FROM:=TO]...\n"
+    "Plays the drives of a scan list on a pseudo-terminal. It wants the parameters scan_list and link (or port: the "
+    "name\n"
+    "of the link to the terminal), best by simulated_bus.launch. Without ROS: simulated_bus --help\n";
 
 /// A parameter tree as YAML text (flow style, every scalar quoted).
 std::string toYaml(XmlRpc::XmlRpcValue& value)
@@ -159,6 +166,10 @@ void play(ros::NodeHandle& node)
 
 int main(int argc, char** argv)
 {
+  if (const auto status = inverter_bus::ros_node::answerCommandLine(argc, argv, USAGE))
+  {
+    return *status;
+  }
   ros::init(argc, argv, "simulated_bus");
   const auto onSignal = [](int) { ros::requestShutdown(); };
   std::signal(SIGTERM, onSignal);  // roscpp itself looks after SIGINT only

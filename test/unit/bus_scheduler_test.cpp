@@ -988,6 +988,18 @@ TEST(Scheduler, driveThatIsSilentWhenItsTimeHasComeLetsTheOthersGoFirst)
   EXPECT_EQ(line.exchange(), "R2") << "0 is over its time by far, and was tried a moment ago";
 }
 
+TEST(Scheduler, drivesThatAreSilentWhenTheirTimeHasComeTakeTurns)
+{
+  VirtualLine line(3);
+  line.views[0].serve_by = at(100);
+  line.views[1].serve_by = at(900);
+  line.views[2].serve_by = at(905);
+  line.dead = { 0, 1, 2 };
+  line.now = at(1000);
+  // The time of one that never answers never moves: it must not be the first one for ever.
+  EXPECT_THAT(line.exchanges(6), ElementsAre("R0", "R1", "R2", "R0", "R1", "R2"));
+}
+
 TEST(Scheduler, repeatOfALostReadGivesWayToADriveWhoseTimeHasCome)
 {
   VirtualLine line(3);

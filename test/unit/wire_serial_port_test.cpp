@@ -338,7 +338,8 @@ TEST_F(SerialPortTest, aMissingDeviceIsNotThere)
   settings_.device = "/dev/inverter_bus_no_such_port";
   const auto port = makeSerialPort(settings_);
   EXPECT_EQ(OpenResult::NotThere, open(*port));
-  EXPECT_EQ("cannot open /dev/inverter_bus_no_such_port: No such file or directory", error_);
+  EXPECT_EQ("cannot open /dev/inverter_bus_no_such_port: No such file or directory: plug it in, or check its name",
+            error_);
   EXPECT_FALSE(port->isOpen());
   EXPECT_EQ(settings_.device, port->name());
 }

@@ -57,6 +57,7 @@ private:
   Duration refreshCost(std::size_t index) const;
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
+  std::string behindGateway() const;
 
   const Configuration& configuration_;
   const wire::Line& line_;

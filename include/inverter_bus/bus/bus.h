@@ -51,9 +51,13 @@ public:
   /// confirmed; empty: all stopped. A second call does nothing.
   std::vector<std::string> shutdown();
 
-  /// A velocity command for one or several inverters: all accepted or none (zeros always). The verdict shows in status.
+  /// A velocity command for one or several inverters: all accepted or none (what stops(), always). The verdict shows in
+  /// the status and in the log.
   /// Returns the error id of a refused command, else 0.
   std::uint16_t command(const VelocityCommand& command);
+
+  /// \p velocity takes the RUN of inverter \p index off and is never refused: 0, or near it. Any thread, no lock.
+  bool stops(std::size_t index, double velocity) const;
 
   /// A velocity command that could not even be turned into targets (unequal lengths, unknown or repeated names): shows
   /// \p error_id and \p text in the status of \p indices (may be empty) and, with \p group, in that of the bus. It feeds

@@ -28,9 +28,10 @@ public:
 
 private:
   TimePoint openPort();
+  TimePoint noteOpening(wire::OpenResult result, const std::string& error);
+  bool reopen();
   void judgePatience(TimePoint now, bool in_use);
   void lookAtAdapter();
-  void lose();
 
   Coordinator& coordinator_;
   wire::Line& line_;
@@ -38,6 +39,8 @@ private:
   std::mutex& mutex_;
   TimePoint next_open_;
   TimePoint next_look_;
+  /// An attempt to open the port is under way.
+  bool opening_ = false;
   std::optional<TimePoint> in_use_since_;
   bool ever_opened_ = false;
   bool given_up_ = false;

@@ -107,6 +107,8 @@ public:
   bool offline() const;
   /// A complete status has come since start or return.
   bool known() const;
+  /// A complete status has come since the node was started.
+  bool everKnown() const;
   /// It answers again, but no complete status has come yet: to users it is still away.
   bool unreadSinceReturn() const;
   /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
@@ -185,7 +187,7 @@ private:
   bool writesWear() const;
   std::string blockFinding() const;
   std::vector<int> wantedWriteCodes() const;
-  void judgeRestart(const drive::Monitor& monitor, Judgement& judgement);
+  void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
@@ -193,6 +195,7 @@ private:
 
   int offline_after_;
   bool known_ = false;  ///< a complete status has come since start or return
+  bool ever_known_ = false;
   bool offline_ = false;
   int failures_ = 0;
   std::uint16_t exchange_error_ = 0;
@@ -222,6 +225,8 @@ private:
   std::optional<TimePoint> run_shown_at_;
   /// The drive's own copy of our RUN command was read as on since the last lost exchange.
   bool run_proven_ = false;
+  /// By then the drive had not restarted.
+  TimePoint no_restart_until_;
   double last_shown_hz_ = 0.0;
   bool block_configured_ = false;
   std::string block_note_;

@@ -52,12 +52,29 @@ struct InverterView
   unsigned stop_attempts = 0;
   /// The stop is written and only its read-back is due.
   bool stop_written = false;
+  /// One of a flood of stops of an inverter whose RUN is off already.
+  bool stop_repeats = false;
   /// No exchange before this time (the reply of an earlier one could be taken for its answer).
   TimePoint refresh_not_before;
   /// Latest start of the next exchange if the drive's own communication time-out shall not strike.
   std::optional<TimePoint> serve_by;
   /// Single exchanges of long jobs wait (settings to be read).
   bool background = false;
+  /// No frame of its stop before this time: one is in the gateway.
+  TimePoint stop_not_before;
+  /// Its refresh that went in spite of a busy gateway is not answered yet.
+  bool refresh_unanswered = false;
+};
+
+/// What the way to the drives allows at the moment.
+struct Gate
+{
+  /// Only stops, and the refresh that a drive's own time-out needs: a gateway still works on a lost request.
+  bool stops_only = false;
+  /// When that ends.
+  TimePoint until;
+  /// Offline inverters without a pending stop may be probed.
+  bool bare_probes = true;
 };
 
 /// The scheduler's decision.
@@ -123,12 +140,15 @@ public:
 
   // --- decisions ----------------------------------------------------------------------------------------------------
   /// The next exchange, or when to ask again.
-  Pick next(TimePoint now, const std::vector<InverterView>& views);
+  Pick next(TimePoint now, const std::vector<InverterView>& views, const Gate& gate = Gate());
 
   /// Books the end of the exchange that was picked.
   /// \param more Refresh: the inverter's refresh needs another exchange. Command (velocity): its unit goes on.
   /// \param answered a reply came (a probe that is answered costs nothing of the probes' share).
   void done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered);
+
+  /// What a probe of \p start has cost after all, when that shows only later: a gateway that was kept busy by it.
+  void chargeProbe(TimePoint now, Duration cost);
 
   /// A velocity unit that was cut short (stop, offline) goes on no more.
   void endUnit(CommandId id);
@@ -142,8 +162,8 @@ public:
   bool pauseWasCut() const;
   /// Exchanges so far.
   std::uint64_t exchanges() const;
-  /// The whole bus starts afresh (port opened again).
-  void restartCycle(TimePoint now);
+  /// The whole bus starts afresh (port opened again). \p probes_at_once: what probes have cost before doesn't count.
+  void restartCycle(TimePoint now, bool probes_at_once = true);
 
 private:
   struct Ticket
@@ -152,10 +172,11 @@ private:
     std::uint64_t epoch;
     std::uint64_t sequence;
   };
-  std::optional<Pick> pickStop(const std::vector<InverterView>& views, bool nothing_else) const;
+  std::optional<Pick> pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const;
   std::optional<Pick> pickDeadline(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickCommand(TimePoint now, bool urgent_only) const;
   std::optional<Pick> pickProbe(TimePoint now, const std::vector<InverterView>& views) const;
+  bool mayProbe(TimePoint now, const InverterView& view, std::size_t index) const;
   std::optional<Pick> pickRefresh(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickBackground(const std::vector<InverterView>& views) const;
   Pick nothing(TimePoint now, const std::vector<InverterView>& views) const;
@@ -163,6 +184,7 @@ private:
   bool findNextOfCycle(TimePoint now, const std::vector<InverterView>& views);
   void closeCycle(TimePoint now);
   Pick choose(TimePoint now, const std::vector<InverterView>& views);
+  Pick chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate);
   std::optional<Pick> chooseBehindStops(TimePoint now, const std::vector<InverterView>& views);
   void noteHalfRefresh(const Pick& pick, bool more);
   void bookStop(const Pick& pick, const std::vector<InverterView>& views);
@@ -180,10 +202,13 @@ private:
   // stops
   std::vector<bool> stop_pending_;
   std::vector<std::uint64_t> last_stop_exchange_;
-  /// Its last refresh was not answered.
-  std::vector<bool> silent_at_deadline_;
+  /// The exchange in which its refresh was not answered last; 0: it has answered since.
+  std::vector<std::uint64_t> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
+  /// Frames of stops since the last exchange that took nothing from a stop.
   unsigned stops_in_a_row_ = 0;
+  /// The last exchange went although a stop waited.
+  bool let_through_ = false;
 
   // commands and refreshes
   CommandId unit_ = 0;
@@ -196,6 +221,9 @@ private:
   // probes
   std::size_t probe_cursor_ = 0;
   TimePoint next_probe_;
+  std::vector<TimePoint> last_probe_;
+  /// Of the gate at hand.
+  bool bare_probes_ = true;
 
   // cycle
   std::size_t cursor_ = 0;

@@ -85,6 +85,9 @@ struct Reply
   /// Timeout: the exception code by which a gateway said so, which has then done with the request (nothing of it is
   /// outstanding); 0: nobody answered.
   std::uint8_t gateway_code = 0;
+  /// Timeout: the other end has closed the connection in place of the answer (contract, 8.9), and a new one is opened at
+  /// once.
+  bool connection_closed = false;
 };
 
 constexpr std::uint16_t ERROR_TIMEOUT = 0x0205;

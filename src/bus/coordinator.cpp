@@ -60,7 +60,8 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
   {
     inverters_.push_back(std::make_unique<Inverter>(index, configuration.bus.inverters[index],
-                                                    configuration.drives[index], configuration.bus.offline_after));
+                                                    configuration.drives[index], configuration.bus.offline_after,
+                                                    configuration.bus.retries));
   }
   Scheduler::Settings settings;
   settings.inverters = inverters_.size();
@@ -438,13 +439,17 @@ std::optional<Write> Coordinator::nextWrite(TimePoint now, const Inverter& inver
 
 std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, const Pick& pick)
 {
-  for (const std::size_t member : scheduler_->members(pick.command))
+  std::vector<std::size_t> members = scheduler_->members(pick.command);
+  // The member whose turn it is, and if it needs no frame any more, the next one.
+  std::rotate(members.begin(), std::lower_bound(members.begin(), members.end(), pick.inverter), members.end());
+  for (const std::size_t member : members)
   {
     Inverter& inverter = *inverters_[member];
     if (const auto write = nextWrite(now, inverter))
     {
       Current current;
       current.pick = pick;
+      current.pick.inverter = member;
       current.purpose = Purpose::Velocity;
       current.inverter = member;
       current.write = *write;
@@ -555,7 +560,12 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     return stop_write || readBackSafely(inverter, current);
   }
   const TimePoint allowed = std::max(line_.mayAskAt(current.request), now + std::chrono::milliseconds(1));
-  if (current.purpose == Purpose::Velocity || current.purpose == Purpose::Job)
+  if (current.purpose == Purpose::Velocity)
+  {
+    // The other members of a group don't wait for it.
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed);
+  }
+  else if (current.purpose == Purpose::Job)
   {
     scheduler_->postpone(current.pick.command, allowed);
   }

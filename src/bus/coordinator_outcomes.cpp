@@ -171,6 +171,19 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
   }
 }
 
+/// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
+void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  if (inverter.failed(now, error_id, true))
+  {
+    wentOffline(now, inverter, error_id);
+  }
+  if (inverter.needsRead())
+  {
+    scheduler_->readSoon(inverter.index);
+  }
+}
+
 void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
   scheduler_->eraseVelocity(inverter.index);
@@ -199,7 +212,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     inverter.movement.forgetWords();
     return;
   }
-  const bool wrote = !current.resync && !inverter.stop.written();
+  const bool write = !current.resync && !inverter.stop.written();
   if (reply.connection_closed && !inverter.offline())
   {
     // It counts no try: the same frame goes first over the next connection.
@@ -214,20 +227,37 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
       noteStopLatency(*latency);
     }
   }
-  if (wrote && gateway_.motionUntil(reply.sent_at, current.inverter))
+  if (write && gateway_.motionUntil(reply.sent_at, current.inverter))
   {
     inverter.stop.writeOnceMore();
     inverter.interlock.stopRequested();
     return;
   }
   const StopJob::Progress progress = inverter.stop.done(reply, current.may_be_late);
+  if (write && reply.outcome == wire::Outcome::Ok && !current.may_be_late)
+  {
+    inverter.lost_writes.acknowledged();
+  }
   if (progress == StopJob::Progress::Confirmed)
   {
     stopConfirmed(reply.finished_at, inverter);
   }
-  if (!alive(reply))
+  if (alive(reply))
+  {
+    return;
+  }
+  if (write)
+  {
+    noteLostWrite(reply.finished_at, inverter, reply.error_id);
+  }
+  else
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+  const bool too_many = write && inverter.lost_writes.lost();
+  if (too_many && !inverter.offline())
+  {
+    writesLost(reply.finished_at, inverter);
   }
 }
 
@@ -246,42 +276,82 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     {
       inverter.settings.commanded();
     }
-    inverter.velocity_tries = 0;
+    inverter.lost_writes.acknowledged();
     ++inverter.velocity_frames;
     finishVelocity(current, reply);
     return;
   }
   inverter.movement.doubtful(current.write);
-  if (repeat(inverter.velocity_tries, reply) && !cancelled)
+  const bool lost = !alive(reply);
+  // A loop-back that was lost writes nothing.
+  const bool too_many = lost && !current.resync && inverter.lost_writes.lost();
+  const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
+  if (again && !cancelled)
   {
+    // The other members of a group go on without it.
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now);
     finishExchange(current, reply, true);
     return;
   }
-  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
   scheduler_->eraseVelocity(current.inverter);
   finishExchange(current, reply, !scheduler_->members(current.pick.command).empty());
   if (reply.outcome == wire::Outcome::Ok)
   {
     return;
   }
+  inverter.lost_writes.velocityEnded();
+  if (lost)
+  {
+    noteLostWrite(now, inverter, reply.error_id);
+  }
   if (!cancelled)
   {
-    inverter.refuseCommand(reply.error_id, refusalText(inverter, reply.error_id));
-    inverter.movement.giveUp();
-    if (!inverter.movement.runPossible())
-    {
-      inverter.interlock.resting();
-    }
-    if (zero || current.write.starts)
-    {
-      // Nobody knows whether the motor runs: it shall not.
-      requestStop(now, inverter, StopMode::Decelerate, false, "");
-    }
+    failVelocity(current, reply, too_many);
   }
-  if (!alive(reply))
+}
+
+/// It is not sent again.
+void Coordinator::failVelocity(const Current& current, const wire::Reply& reply, bool too_many_lost)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (inverter.offline())
   {
-    noteLost(now, inverter, reply.error_id);
+    return;
   }
+  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
+  inverter.velocityFailed(reply.error_id, refusalText(inverter, reply.error_id));
+  inverter.movement.giveUp();
+  if (!alive(reply) && (too_many_lost || inverter.movement.runPossible()))
+  {
+    writesLost(reply.finished_at, inverter);
+    return;
+  }
+  if (!inverter.movement.runPossible())
+  {
+    inverter.interlock.resting();
+  }
+  if (zero || current.write.starts)
+  {
+    // Nobody knows whether the motor runs: it shall not.
+    requestStop(reply.finished_at, inverter, StopMode::Decelerate, false, "");
+  }
+  if (current.write.starts)
+  {
+    inverter.stop.hold();
+  }
+}
+
+/// Contract, 8.1: what can't be written to can't be commanded, however well it answers reads.
+void Coordinator::writesLost(TimePoint now, Inverter& inverter)
+{
+  const std::string text = inverter.lost_writes.text();
+  if (!inverter.lost_writes.raised())
+  {
+    log(Level::Error, inverter.config.name + ": stopping and locking: " + text);
+  }
+  inverter.lost_writes.raise();
+  inverter.velocityFailed(wire::ERROR_TIMEOUT, text);
+  requestStop(now, inverter, StopMode::Decelerate, true, "");
 }
 
 /// What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
@@ -322,6 +392,10 @@ void Coordinator::finishVelocity(const Current& current, const wire::Reply& repl
   Inverter& inverter = *inverters_[current.inverter];
   const bool complete = !inverter.movement.next();
   const bool too_long = inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  if (complete)
+  {
+    inverter.velocityConfirmed();
+  }
   if (complete || too_long)
   {
     scheduler_->eraseVelocity(current.inverter);
@@ -445,6 +519,10 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     inverter.refresh_tries = 0;
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
+    if (reply.outcome == wire::Outcome::Ok && inverter.lost_writes.readAnswered())
+    {
+      log(Level::Error, inverter.config.name + ": stopped and locked: " + inverter.lost_writes.text());
+    }
     finishExchange(current, reply, more);
     inverter.noteStatus(reply, more);
     if (more)
@@ -463,7 +541,8 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     }
     return;
   }
-  if (repeat(inverter.refresh_tries, reply))
+  // One that has lost as many writes as make a drive offline is not asked twice.
+  if (!inverter.needsRead() && repeat(inverter.refresh_tries, reply))
   {
     finishExchange(current, reply, true);
     return;

@@ -83,6 +83,10 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = "a parameter is being written in the drive's setup area";
     return judged.error_id;
   }
+  else if (inverter.stop.held())
+  {
+    judged.error_id = ERROR_CANCELLED;
+  }
   else
   {
     switch (inverter.interlock.judge(now, publisher))
@@ -281,6 +285,7 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
   }
   inverter.acceptCommand();
   refusals_.accepted(inverter.index);
+  inverter.velocityConfirmed();
   if (inverter.stop.pending())
   {
     return false;
@@ -298,7 +303,6 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     return false;
   }
   inverter.movement.aim(target);
-  inverter.velocity_tries = 0;
   return inverter.movement.active();
 }
 
@@ -310,7 +314,6 @@ bool Coordinator::applyMove(TimePoint now, Inverter& inverter, const Publisher& 
   // Only the stop of a command of 0 can be pending here; the newer command takes its place.
   inverter.stop.cancel();
   inverter.movement.aim(target);
-  inverter.velocity_tries = 0;
   return inverter.movement.active();
 }
 
@@ -348,6 +351,7 @@ void Coordinator::requestStop(TimePoint now, Inverter& inverter, StopMode mode, 
   }
   if (lock)
   {
+    inverter.stop.hold();
     inverter.interlock.stopRequested();
   }
 }

@@ -59,7 +59,8 @@ bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, doubl
 }
 }  // namespace
 
-Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after)
+Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after,
+                   int retries)
   : index(index)
   , config(config)
   , drive(drive)
@@ -68,6 +69,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , stop(drive, config.node)
   , refresh(drive, config.node)
   , settings(drive, config.node)
+  , lost_writes(retries, offline_after)
   , offline_after_(offline_after)
 {
 }
@@ -80,6 +82,7 @@ bool Inverter::answered(const wire::Reply& reply)
   last_reply_ = reply.finished_at;
   ever_answered_ = true;
   failures_ = 0;
+  read_failed_ = false;
   exchange_error_ = 0;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
   probes = 0;
@@ -92,16 +95,17 @@ bool Inverter::answered(const wire::Reply& reply)
   return back;
 }
 
-bool Inverter::failed(TimePoint now, std::uint16_t error_id)
+bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
   if (now < silence_until_)
   {
     return false;
   }
   exchange_error_ = error_id;
+  read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
   const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
-  if (patience || offline_)
+  if (patience || !read_failed_ || offline_)
   {
     return false;
   }
@@ -132,11 +136,18 @@ void Inverter::goOffline(std::uint16_t error_id)
   operation_off_since_.reset();
   unexpected_motion_ = false;
   reset_active = false;
+  // From now on nothing of it is answered, and that is what users are told.
+  lost_writes.lower();
 }
 
 bool Inverter::offline() const
 {
   return offline_;
+}
+
+bool Inverter::needsRead() const
+{
+  return !offline_ && failures_ >= offline_after_ && !read_failed_;
 }
 
 bool Inverter::known() const
@@ -584,14 +595,47 @@ InverterStatus Inverter::status(TimePoint now) const
   status.reset_active = reset_active;
   status.stop_active = stop.pending();
   status.locked = interlock.locked(now);
-  status.error_id = command_error_ != 0 ? command_error_ : exchange_error_;
-  if (status.error_id != 0)
-  {
-    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_);
-  }
+  showError(status);
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
   return status;
+}
+
+/// The one that says most: why it is locked more than that it is, a command's own more than a single exchange's.
+void Inverter::showError(InverterStatus& status) const
+{
+  if (lost_writes.raised())
+  {
+    status.error_id = wire::ERROR_TIMEOUT;
+    status.error_text = lost_writes.text();
+  }
+  else if (command_error_ != 0)
+  {
+    status.error_id = command_error_;
+    status.error_text = command_error_text_;
+  }
+  else if (velocity_error_ != 0)
+  {
+    status.error_id = velocity_error_;
+    status.error_text = velocity_error_text_;
+  }
+  else if (exchange_error_ != 0)
+  {
+    status.error_id = exchange_error_;
+    status.error_text = errorText(exchange_error_);
+  }
+}
+
+void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
+{
+  velocity_error_ = error_id;
+  velocity_error_text_ = text;
+}
+
+void Inverter::velocityConfirmed()
+{
+  velocity_error_ = 0;
+  velocity_error_text_.clear();
 }
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
@@ -625,6 +669,14 @@ std::vector<Finding> Inverter::errors() const
     findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
                                            "); check supply, wiring, station number and serial settings" });
     return findings;
+  }
+  if (lost_writes.raised())
+  {
+    findings.push_back(
+        { Level::Error,
+          lost_writes.text() + " (" + std::to_string(lost_writes.inARow()) +
+              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
+              "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
   }
   if (interlock.isFaulted())
   {

@@ -257,6 +257,8 @@ private:
   void finishExchange(const Current& current, const wire::Reply& reply, bool more);
   void doneStop(const Current& current, const wire::Reply& reply);
   void doneVelocity(const Current& current, const wire::Reply& reply);
+  void failVelocity(const Current& current, const wire::Reply& reply, bool too_many_lost);
+  void writesLost(TimePoint now, Inverter& inverter);
   void countWear(const Current& current);
   void noteBlockRefusal(const Current& current, const wire::Reply& reply);
   void configureBlock(TimePoint now, Inverter& inverter);
@@ -269,6 +271,7 @@ private:
   bool repeat(int& tries, const wire::Reply& reply) const;
   void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void judgeRefresh(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);

@@ -63,6 +63,9 @@ public:
   bool wantsClearLine() const;
   /// The read-back can't be asked now: the next attempt begins.
   void writeAgain();
+  /// No newer velocity takes the place of the pending stop; without this a stop by a command of 0 gives way to one.
+  void hold();
+  bool held() const;
   /// RUN was seen off by a status read that was sent after the write.
   void confirm();
   /// A newer command of the same user takes its place (a command of 0 that was superseded).
@@ -78,6 +81,7 @@ private:
   const drive::Drive& drive_;
   std::uint8_t station_;
   bool pending_ = false;
+  bool held_ = false;
   StopMode mode_ = StopMode::Decelerate;
   unsigned attempts_ = 0;
   std::size_t step_ = 0;

@@ -219,6 +219,21 @@ void checkUnique(const Section& entry, const InverterConfig& inverter, const std
   }
 }
 
+/// To a gateway with several drives 0 is everybody and 255 the gateway itself (Modbus messaging on TCP/IP implementation
+/// guide V1.0b, section 4.4.2.3).
+void checkAlone(const std::vector<Section>& entries, const std::vector<ConfiguredInverter>& inverters)
+{
+  for (std::size_t i = 0; i < inverters.size() && inverters.size() > 1; ++i)
+  {
+    const InverterConfig& inverter = inverters[i].config;
+    if (inverter.ownPort() && (inverter.node == 0 || inverter.node == 255))
+    {
+      entries[i].fail("node", "is for a drive with an Ethernet port of its own, and there are others on this bus",
+                      "0 and 255 only as the single entry of scan_list; 1 to 247 behind a gateway");
+    }
+  }
+}
+
 Configuration inNodeOrder(BusConfig bus, std::vector<ConfiguredInverter> inverters)
 {
   std::sort(inverters.begin(), inverters.end(),
@@ -241,13 +256,15 @@ Configuration readConfiguration(const Value& parameters, const std::string& plac
   BusConfig bus = readBus(section);
   std::vector<ConfiguredInverter> inverters;
   // "~scan_list[0]" is how ROS writes a private parameter; a file name wants a separator.
-  for (const Section& entry : readScanList(section, place == "~" ? place : place + ": "))
+  const std::vector<Section> entries = readScanList(section, place == "~" ? place : place + ": ");
+  for (const Section& entry : entries)
   {
     ConfiguredInverter inverter = readInverter(entry, bus, profile_directory);
     checkUnique(entry, inverter.config, inverters);
     checkSerial(section, bus.serial, inverter.config, inverter.drive.profile());
     inverters.push_back(std::move(inverter));
   }
+  checkAlone(entries, inverters);
   return inNodeOrder(std::move(bus), std::move(inverters));
 }
 }  // namespace bus

@@ -20,7 +20,9 @@ namespace
 const std::vector<std::string> RESERVED_NAMES{ "bus", "command", "stop", "bus_status", "dump_trace" };
 
 /// Stations that a request can address at all: Modbus 1 to 247, CompoWay/F 0 to 99.
-constexpr int LAST_STATION = 247;
+constexpr int LAST_STATION = InverterConfig::LAST_SERIAL_STATION;
+/// Unit identifiers of Modbus TCP.
+constexpr int LAST_UNIT = 255;
 
 /// A velocity that the profile's maximum allows by arithmetic may miss it by rounding.
 constexpr double ROUNDING = 1e-9;
@@ -253,8 +255,17 @@ void checkProtocolKeys(const Section& entry, const drive::Profile& profile, cons
   }
 }
 
-std::uint8_t readNode(const Section& entry, const drive::Profile& profile)
+std::uint8_t readNode(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
 {
+  if (bus.modbus_tcp)
+  {
+    // Beyond the serial stations: a drive with a port of its own.
+    const std::int64_t unit = entry.integer("node", 0, 0, LAST_UNIT);
+    if (unit == 0 || unit > LAST_STATION)
+    {
+      return static_cast<std::uint8_t>(unit);
+    }
+  }
   const auto last = std::min<unsigned>(profile.last_station, LAST_STATION);
   return static_cast<std::uint8_t>(entry.integer("node", 0, profile.first_station, last));
 }
@@ -266,7 +277,8 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   config.name = readName(entry);
   // Before the profile is read, so that nonsense is named as such; its own range comes with the profile.
   entry.require("node", "a station number");
-  entry.integer("node", 0, bus.protocol == "compoway_f" ? 0 : 1, LAST_STATION);
+  const bool from_zero = bus.modbus_tcp || bus.protocol == "compoway_f";
+  entry.integer("node", 0, from_zero ? 0 : 1, bus.modbus_tcp ? LAST_UNIT : LAST_STATION);
   entry.require("drive", "the name of a profile or an absolute path to one");
   config.drive = entry.text("drive", "");
   config.changes = readChanges(entry);
@@ -274,7 +286,8 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   drive::Drive drive(loadProfileOf(entry, config, profile_directory));
   const drive::Profile& profile = drive.profile();
   checkProtocol(entry, profile, bus);
-  config.node = readNode(entry, profile);
+  config.modbus_tcp = bus.modbus_tcp;
+  config.node = readNode(entry, profile, bus);
   checkArming(entry, drive);
   checkProtocolKeys(entry, profile, bus);
   readVelocities(entry, profile, config);

@@ -26,7 +26,8 @@ bool alive(const wire::Reply& reply)
 /// Lost or damaged: is it to be repeated?
 bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 {
-  if (alive(reply))
+  // A gateway that says that the drive is silent has tried itself.
+  if (alive(reply) || reply.gateway_code != 0)
   {
     tries = 0;
     return false;
@@ -80,7 +81,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     return;
   }
   Inverter& inverter = *inverters_[current.inverter];
-  inverter.noteExchange(reply.outcome);
+  inverter.noteExchange(reply);
   if (current.request.expects_reply)
   {
     noteLink(reply);
@@ -174,7 +175,7 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
 /// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
 void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
-  if (inverter.failed(now, error_id, true))
+  if (!behind_another_ && inverter.failed(now, error_id, true))
   {
     wentOffline(now, inverter, error_id);
   }
@@ -216,7 +217,14 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   if (reply.connection_closed && !inverter.offline())
   {
     // It counts no try: the same frame goes first over the next connection.
-    noteLost(reply.finished_at, inverter, reply.error_id);
+    if (write)
+    {
+      noteLostWrite(reply.finished_at, inverter, reply.error_id);
+    }
+    else
+    {
+      noteLost(reply.finished_at, inverter, reply.error_id);
+    }
     return;
   }
   if (gateway_.active() && alive(reply))
@@ -254,7 +262,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
   }
-  const bool too_many = write && inverter.lost_writes.lost();
+  const bool too_many = write && !behind_another_ && inverter.lost_writes.lost();
   if (too_many && !inverter.offline())
   {
     writesLost(reply.finished_at, inverter);
@@ -281,10 +289,14 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     finishVelocity(current, reply);
     return;
   }
-  inverter.movement.doubtful(current.write);
+  if (!current.resync)
+  {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write, now);
+  }
   const bool lost = !alive(reply);
   // A loop-back that was lost writes nothing.
-  const bool too_many = lost && !current.resync && inverter.lost_writes.lost();
+  const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
   const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
   if (again && !cancelled)
   {

@@ -373,6 +373,14 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "reservedDumpTrace", named("dump_trace"), { "'name'", "'dump_trace'", "reserved", ALLOWED } },
         Wrong{ "nodeZero", numbered("0"), { BELT, "'node'", "= 0", "from 1 to" } },
         Wrong{ "nodeBeyond", numbered("248"), { BELT, "'node'", "248", "to 247" } },
+        Wrong{ "unitBeyond", "port: tcp://plc\n" + numbered("256"), { BELT, "'node'", "256", "from 0 to 255" } },
+        Wrong{ "unitOfAnRtuTunnel", "port: rtu+tcp://plc:4001\n" + numbered("255"), { BELT, "'node'", "to 247" } },
+        Wrong{ "unitZeroBesideOthers",
+               "port: tcp://plc\ndefaults: {drive: omron_mx2}\nscan_list: [{name: a, node: 1}, {name: b, node: 0}]\n",
+               { "~scan_list[1] (b)", "'node'", "= 0", "single entry" } },
+        Wrong{ "unit255BesideOthers",
+               "port: tcp://plc\ndefaults: {drive: omron_mx2}\nscan_list: [{name: b, node: 255}, {name: a, node: 1}]\n",
+               { "~scan_list[0] (b)", "'node'", "255", "single entry" } },
         Wrong{ "nodeText", numbered("one"), { BELT, "'node'", "'one'", "whole number" } },
         Wrong{ "nodeBroken", numbered("1.0"), { BELT, "'node'", "whole number" } },
         Wrong{ "unknownDrive", driven("omron_mx3"), { BELT, "'drive'", "'omron_mx3'", "omron_mx2", ALLOWED } },
@@ -415,6 +423,22 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "confirmNumber", entry("confirm: [1]"), { BELT, "'confirm'", "[1]", ALLOWED } },
         Wrong{ "unknownConfirm", entry("confirm: [no_such_item]"), { BELT, "confirm", "no_such_item" } }),
     [](const testing::TestParamInfo<Wrong>& info) { return info.param.name; });
+
+TEST(ConfigurationTest, aDriveWithItsOwnPortMayHaveAnyUnit)
+{
+  for (const int unit : { 0, 1, 247, 248, 255 })
+  {
+    const BusConfig bus = read("port: tcp://plc\n" + numbered(std::to_string(unit))).bus;
+    EXPECT_EQ(unit, bus.inverters[0].node);
+    EXPECT_EQ(unit == 0 || unit > 247, bus.inverters[0].ownPort());
+  }
+  const BusConfig two =
+      read("port: tcp://plc\ndefaults: {drive: omron_mx2}\nscan_list: [{name: a, node: 1}, {name: b, node: 254}]\n")
+          .bus;
+  EXPECT_FALSE(two.inverters[0].ownPort());
+  EXPECT_TRUE(two.inverters[1].ownPort());
+  EXPECT_FALSE(read(ONE).bus.inverters[0].ownPort());
+}
 
 TEST(ConfigurationTest, skippedFieldsReachTheDrive)
 {

@@ -39,6 +39,7 @@ public:
     , coordinator_(configuration_, line_)
     , loop_(coordinator_, line_, clock_, mutex_)
   {
+    line_.setGatewayTimeout(seconds(configuration_.bus.gateway_timeout));
     simulated_.setObserver([this](const simulation::FrameRecord& frame) { frames_.push_back(frame); });
   }
 

@@ -56,6 +56,7 @@ struct InverterConfig
 {
   std::string name;
   std::uint8_t node = 0;
+  bool modbus_tcp = false;  ///< resolved: on tcp://
   std::string drive;
   double hz_per_unit = 1.0;
   double max_velocity = 0.0;  ///< resolved: never above the profile's maximum / |hz_per_unit|
@@ -72,6 +73,14 @@ struct InverterConfig
   /// Status fields that are left out: not read, NaN, and their unconfirmed items are not reported.
   std::vector<std::string> skip;
   drive::ProfileChanges changes;
+
+  /// A unit number that no station of a serial line has (Modbus over serial line V1.02, section 2.2): of a drive with an
+  /// Ethernet port of its own. Only on tcp://.
+  bool ownPort() const
+  {
+    return modbus_tcp && (node == 0 || node > LAST_SERIAL_STATION);
+  }
+  static constexpr std::uint8_t LAST_SERIAL_STATION = 247;
 };
 
 /// The private parameters of the node.

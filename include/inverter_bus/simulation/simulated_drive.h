@@ -141,6 +141,7 @@ protected:
   virtual bool answersDamaged() const;
   virtual bool isBroadcast(const Bytes& frame) const = 0;
   virtual std::optional<int> functionOf(const Bytes& frame) const = 0;
+  virtual Access accessOf(const Bytes& frame) const = 0;
   virtual Answer exceptionAnswer(const Bytes& frame, int code) = 0;
   virtual Bytes foreignReply(const Bytes& reply, bool other_station) = 0;
   /// @}
@@ -170,7 +171,8 @@ protected:
 
 private:
   bool listening() const;
-  std::optional<Answer> serve(const Bytes& frame, const std::vector<Fault>& faults, TimePoint now);
+  std::optional<Answer> serve(const Bytes& frame, const ExchangeFacts& exchange, std::vector<Fault> faults,
+                              TimePoint now);
   void spoil(Answer& answer, const Fault& fault);
   void changeConnection();
 

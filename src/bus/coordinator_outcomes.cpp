@@ -90,7 +90,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
   }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
-    log(Level::Ok, inverter.config.name + ": online");
+    log(Level::Ok, inverter.config.name + ": online", inverter.config.name);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))
@@ -135,6 +135,11 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       doneSetting(current, reply);
       break;
     default:
+      if (inverter.offline())
+      {
+        // Not the port that was gone before.
+        inverter.noteExchangeError(reply.error_id);
+      }
       finishExchange(current, reply, false);
       break;
   }
@@ -187,7 +192,7 @@ void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason());
+    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(), inverter.config.name);
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -659,7 +664,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
       sign_of_life.turnaround =
           std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
-      log(Level::Ok, inverter->config.name + ": online (its reply came late)");
+      log(Level::Ok, inverter->config.name + ": online (its reply came late)", inverter->config.name);
     }
   }
 }
@@ -672,6 +677,11 @@ void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bo
   }
   counters_ = counters;
   echo_found_ = echo_found;
+}
+
+void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
+{
+  adapter_.note(latency);
 }
 
 void Coordinator::portOpened(TimePoint now)
@@ -694,7 +704,7 @@ void Coordinator::portOpened(TimePoint now)
     port_complained_ = false;
     port_error_.clear();
     last_error_ = 0;
-    log(Level::Ok, "port " + configuration_.bus.port + " is open");
+    log(Level::Ok, "port " + configuration_.bus.port + " is open", PORT);
   }
   for (const auto& inverter : inverters_)
   {
@@ -711,7 +721,7 @@ void Coordinator::portWorks()
     port_failing_ = false;
     port_complained_ = false;
     port_error_.clear();
-    log(Level::Ok, "port " + configuration_.bus.port + " works again");
+    log(Level::Ok, "port " + configuration_.bus.port + " works again", PORT);
   }
 }
 
@@ -729,7 +739,7 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
-        error + (in_use ? "; trying again for a while" : "; the node keeps trying"));
+        error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);
     portLost(now);
   }
 }
@@ -746,8 +756,10 @@ void Coordinator::portLost(TimePoint now)
                        ": another client may hold it, or it serves another protocol mode");
     return;
   }
-  portFails(now,
-            "port " + port + (unused ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone"));
+  portFails(now, "port " + port +
+                     (unused                       ? " can be opened, but fails in use: see dmesg, check the adapter"
+                      : configuration_.bus.gateway ? " is gone"
+                                                   : " is gone: plug it in"));
 }
 
 /// \p error says what is wrong with it, once.
@@ -760,7 +772,7 @@ void Coordinator::portFails(TimePoint now, const std::string& error)
   {
     port_failing_ = !port_works_ || line_.telnetFound();
     port_error_ = error;
-    log(Level::Error, port_error_ + "; the node keeps trying");
+    log(Level::Error, port_error_ + "; the node keeps trying", PORT);
     port_complained_ = true;
   }
   connected_ = false;

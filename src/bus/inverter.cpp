@@ -734,6 +734,12 @@ std::string Inverter::silenceText() const
 std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
+  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+                                           "), since the port is not open: what to do about it is told of the bus" });
+    return findings;
+  }
   if (offline_)
   {
     findings.push_back({ Level::Error, offlineText(now) });

@@ -36,7 +36,7 @@ std::optional<bus::Configuration> readNodeConfiguration()
 {
   try
   {
-    return bus::readConfiguration(readParameters(), "~", profileDirectory());
+    return bus::readConfiguration(readParameters(), "~", drive::shippedProfileDirectory());
   }
   catch (const drive::ConfigurationError& error)
   {
@@ -45,8 +45,12 @@ std::optional<bus::Configuration> readNodeConfiguration()
   }
 }
 
-void logStart(const bus::BusConfig& config, const bus::Bus& bus)
+void logStart(const bus::BusConfig& config, const std::vector<std::string>& warnings, const bus::Bus& bus)
 {
+  for (const std::string& warning : warnings)
+  {
+    log(bus::Level::Warn, warning);
+  }
   for (const std::string& line : effectiveConfiguration(config))
   {
     log(bus::Level::Ok, line);
@@ -108,7 +112,7 @@ int runNode(Lifetime& lifetime)
                     [](const std::string& text) { log(bus::Level::Warn, text); });
   Publishing publishing(node, *configuration, traces);
   bus::Bus bus(*configuration, bus::makePort(config), publishing);
-  logStart(config, bus);
+  logStart(config, configuration->warnings, bus);
   Services services(node, config, bus, traces);
   Commands commands(node, config, bus);
   MasterWatch master_watch;

@@ -26,15 +26,6 @@ public:
 /// \p text as one line of printable characters and of bearable length, whatever a YAML text contains; for messages.
 std::string oneLine(const std::string& text);
 
-/// How deep flow collections, blocks and lists of \p yaml are nested at most, without parsing it: a parser that recurses
-/// must not be fed more than its stack holds.
-unsigned yamlDepth(const std::string& yaml);
-
-/// More text than any profile or scan list has.
-constexpr std::size_t LARGEST_YAML = 1048576;
-/// Deeper than any profile or scan list.
-constexpr unsigned DEEPEST_YAML = 100;
-
 /// What an address counts.
 enum class Space
 {
@@ -348,12 +339,18 @@ struct ProfileChanges
   std::string place;
   /// Names of unconfirmed items that the user has checked, or `all`.
   std::vector<std::string> confirm;
+  /// Where \ref confirm stands, for messages; empty: where the overrides do.
+  std::string confirm_place;
 };
 
 /// Reads the profile \p name_or_path: an absolute path, or a name that stands for `<directory>/<name>.yaml`.
 /// \throws ConfigurationError "file:line: key ...: what is wrong, what is allowed"
 Profile loadProfile(const std::string& name_or_path, const std::string& directory,
                     const ProfileChanges& changes = ProfileChanges());
+
+/// The folder with the profiles as shipped: environment variable INVERTER_BUS_DRIVES, or where the package is installed, or its
+/// source.
+std::string shippedProfileDirectory();
 
 /// Names of the profiles in \p directory, sorted; empty also if it can't be read.
 std::vector<std::string> knownProfiles(const std::string& directory);

@@ -74,12 +74,12 @@ class Readme(unittest.TestCase):
 
     def listed(self, name):
         """Keys that the code accepts, from its own list."""
-        body = re.search(r'%s(?: keys|\(\)\n\{\n  return)?\s*\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
+        body = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
         return re.findall(r'"(\w+)"', body)
 
     def testBusParametersAreThoseOfTheCode(self):
         documented = [row[0] for row in table(self.readme, '### The bus')]
-        self.assertEqual(documented, self.listed('BUS_KEYS'))
+        self.assertEqual(documented, self.listed('busKeys'))
 
     def testEntryParametersAreThoseOfTheCode(self):
         documented = [row[0] for row in table(self.readme, '### An entry of the scan list')]

@@ -249,8 +249,7 @@ std::optional<Coordinator::Current> Coordinator::composeBroadcast()
   const drive::Step& step = any.drive.sequence("stop")->steps.front();
   Current current;
   current.purpose = Purpose::Broadcast;
-  current.request = any.drive.write(0, step.point, step.value.value_or(0));
-  current.request.broadcast = true;
+  current.request = any.drive.broadcast(step.point, step.value.value_or(0));
   return current;
 }
 

@@ -87,6 +87,7 @@ bool Line::settle()
 
 bool Line::mayAsk(const Request& request) const
 {
+  // One look at the clock: two of them would differ.
   const TimePoint now = clock_.now();
   return mayAskAt(request, now) <= now;
 }

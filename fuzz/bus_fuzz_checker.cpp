@@ -572,6 +572,7 @@ void Checker::glance(TimePoint now)
     world_.drives()[index]->advance(now);
     widen(index);
     sample(now, index);
+    lanes_[index].statuses_tripped = unlistedTrip(index) ? lanes_[index].statuses_tripped : 0;
   }
 }
 
@@ -593,8 +594,9 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
 {
   ++statistics_.statuses;
   Lane& lane = lanes_[status.index];
-  const bool faulted = status.monitor.faulted.value_or(false);
-  const bool was_faulted = lane.heard_of && lane.status.monitor.faulted.value_or(false);
+  const bool faulted = status.monitor.faulted.value_or(false) || status.monitor.unknown_trip;
+  const bool was_faulted =
+      lane.heard_of && (lane.status.monitor.faulted.value_or(false) || lane.status.monitor.unknown_trip);
   if (status.communication_error)
   {
     if (lane.online)
@@ -621,6 +623,7 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
     world_.drives()[status.index]->advance(now);
     sample(now, status.index);
     checkValues(now, status.index, status);
+    checkTrip(now, status.index, status);
     if (!lane.online)
     {
       lane.online = true;
@@ -653,6 +656,63 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
   tryOpen(now, lane);
   lane.heard_of = true;
   lane.status = status;
+}
+
+/// The drive says that it has tripped in a word that its profile does not know.
+bool Checker::unlistedTrip(std::size_t index) const
+{
+  const InverterFacts& facts = scene_.inverters[index];
+  if (facts.drive == "omron_rx")
+  {
+    return flag(index, "tripped") && value(index, "status_b") != "2";
+  }
+  return !facts.listed_trips.empty() && flag(index, "tripped") &&
+         facts.listed_trips.count(std::stoi(value(index, "trip"))) == 0;
+}
+
+/// Rule 4.8, and 8.6 of the contract. The second status since then was asked for in whole after the trip.
+void Checker::checkTrip(TimePoint now, std::size_t index, const bus::InverterStatus& status)
+{
+  Lane& lane = lanes_[index];
+  if (!unlistedTrip(index))
+  {
+    lane.statuses_tripped = 0;
+    return;
+  }
+  const bool whole = !lane.heard_of || lane.status.stamp != status.stamp;
+  lane.statuses_tripped += whole && !status.communication_error ? 1 : 0;
+  if (lane.statuses_tripped < 2)
+  {
+    return;
+  }
+  if (!status.locked)
+  {
+    fail(now, "a trip that no table lists is a trip", nameOf(index) + " is not locked");
+  }
+  if (runLatched(index) && !status.stop_active)
+  {
+    fail(now, "a trip that no table lists is a trip", nameOf(index) + " still has RUN on");
+  }
+  if (status.monitor.faulted)
+  {
+    fail(now, "a trip that no table lists is a trip", nameOf(index) + ": nobody knows whether it is tripped");
+  }
+}
+
+/// The dead man must not say that nobody commands while somebody is refused.
+void Checker::logged(TimePoint now, const std::string& line) const
+{
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const Lane& lane = lanes_[index];
+    const bool silence = line.compare(0, scene_.inverters[index].name.size() + 26,
+                                      scene_.inverters[index].name + ": stopping: no command for") == 0;
+    const Duration timeout = seconds(scene_.inverters[index].command_timeout);
+    if (silence && lane.refused_at && *lane.refused_at < lane.accepted_at + timeout)
+    {
+      fail(now, "refusals are told", nameOf(index) + ": the log says that no command came, but they were refused");
+    }
+  }
 }
 
 void Checker::checkValues(TimePoint now, std::size_t index, const bus::InverterStatus& status)

@@ -34,7 +34,10 @@ constexpr double SPEED_TOLERANCE_HZ = 0.2;
 }  // namespace
 
 Game::Game(World& world, std::uint64_t seed)
-  : world_(world), dice_(seed * 2654435761U + 12345U), streams_(world.scene().inverters.size())
+  : world_(world)
+  , dice_(seed * 2654435761U + 12345U)
+  , limits_dice_(seed * 40503U + 99991U)
+  , streams_(world.scene().inverters.size())
 {
   pace_ = dice_.any<double>({ 0.05, 0.15, 0.3, 0.6 });
   refuses_ = dice_.hits(0.5);
@@ -201,6 +204,7 @@ void Game::beginStream(std::size_t index)
   stream.period = dice_.any<double>({ 0.02, 0.05, 0.1, 0.1, 0.25 });
   stream.until = world_.now() + seconds(dice_.between(0.3, 6.0));
   stream.publisher = anyPublisher();
+  stream.dips = limits_dice_.hits(0.2);
   tickStream(index, ++stream.number);
 }
 
@@ -226,7 +230,14 @@ void Game::tickStream(std::size_t index, unsigned number)
     const double lowest = world_.scene().inverters[index].lowest_hz;
     stream.hertz = std::copysign(lowest + WAVER_HZ * (stream.sent++ % WAVER_STEPS), stream.hertz);
   }
-  sendStream(index, stream);
+  if (stream.dips && limits_dice_.hits(0.15))
+  {
+    sendNearZero(index, stream.publisher);
+  }
+  else
+  {
+    sendStream(index, stream);
+  }
   world_.at(seconds(stream.period), [this, index, number] { tickStream(index, number); });
 }
 
@@ -263,6 +274,24 @@ void Game::sendVelocity(std::size_t index, double hertz, const std::string& publ
   world_.command(command);
 }
 
+/// What nobody would call a movement, in the user's unit.
+double Game::nearZero(std::size_t index)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  const double rounds_to_zero = 0.001 / std::fabs(facts.hz_per_unit);
+  const double below = facts.min_velocity > 0.0 && limits_dice_.hits(0.5) ? 0.9 * facts.min_velocity : rounds_to_zero;
+  return limits_dice_.any<double>({ below, -below, 5e-14 });
+}
+
+void Game::sendNearZero(std::size_t index, const std::string& publisher)
+{
+  bus::VelocityCommand command;
+  command.targets = { { index, nearZero(index) } };
+  command.publisher.name = publisher;
+  command.publisher.topic = nameOf(index) + "/command";
+  world_.command(command);
+}
+
 void Game::sendLatched(std::size_t index)
 {
   const InverterFacts& facts = world_.scene().inverters[index];
@@ -273,6 +302,10 @@ void Game::sendLatched(std::size_t index)
   command.publisher.latched = true;
   command.publisher.first_on_connection = dice_.hits(0.7);
   command.publisher.before_start = dice_.hits(0.3);
+  if (limits_dice_.hits(0.2))
+  {
+    command.targets.front().second = nearZero(index);
+  }
   world_.command(command);
 }
 
@@ -288,6 +321,11 @@ void Game::sendGroup()
     {
       const double hertz = dice_.hits(0.2) ? 0.0 : anySpeed(index);
       command.targets.emplace_back(index, hertz / world_.scene().inverters[index].hz_per_unit);
+      double& velocity = command.targets.back().second;
+      const double dice = limits_dice_.chance();
+      // Beyond the maximum, a little and far; near zero.
+      velocity = dice < 0.1 ? 1.5 * velocity : (dice < 0.15 ? 20.0 * velocity : velocity);
+      velocity = dice > 0.9 ? nearZero(index) : velocity;
     }
   }
   if (!command.targets.empty())
@@ -437,7 +475,9 @@ void Game::harmDrive(std::size_t index)
   }
   else if (dice < 0.65)
   {
-    world_.provoke(name + " trip " + std::to_string(1 + dice_.below(7)));
+    const bool rx = world_.scene().inverters[index].drive == "omron_rx";
+    world_.provoke(name + " trip " + std::to_string(1 + dice_.below(7)) +
+                   (rx && limits_dice_.hits(0.4) ? " state 7" : ""));
   }
   else if (dice < 0.75)
   {
@@ -641,9 +681,11 @@ void Game::runAll()
                       nameOf(index) + " refuses every command after everything has come back\n" + world_.state());
     }
   }
+  std::vector<int> locked(streams_.size(), 0);
   const double each = RUN_EACH_S * static_cast<double>(streams_.size());
-  require(seconds(RUN_S + each + 2.0 * world_.scene().interval), "every motor runs", [this] {
-    return allOf([this](std::size_t index) {
+  require(seconds(RUN_S + each + 2.0 * PAUSE_S + 2.0 * world_.scene().interval), "every motor runs", [this, &locked] {
+    return allOf([this, &locked](std::size_t index) {
+      startAgain(index, locked[index]);
       const Truth truth = world_.checker().truth(index);
       const double wanted = streams_[index].hertz;
       return std::fabs(truth.hertz - std::fabs(wanted)) < SPEED_TOLERANCE_HZ &&
@@ -652,6 +694,20 @@ void Game::runAll()
   });
   world_.run(seconds(0.3));
   streaming_ = false;
+}
+
+/// A drive that tells late that it had started anew is stopped and locked once more: its user is silent, and tries again.
+void Game::startAgain(std::size_t index, int& times)
+{
+  if (streams_[index].on && world_.checker().status(index).locked && times < MOST_ATTEMPTS)
+  {
+    ++times;
+    streams_[index].on = false;
+    world_.at(seconds(PAUSE_S), [this, index] {
+      streams_[index].on = true;
+      runOne(index);
+    });
+  }
 }
 
 bool Game::runOne(std::size_t index)
@@ -672,6 +728,7 @@ bool Game::runOne(std::size_t index)
   stream.drift = 0.0;
   stream.wavers = false;
   stream.grouped = false;
+  stream.dips = false;
   stream.period = STREAM_PERIOD_S;
   stream.until = world_.now() + seconds(100.0);
   stream.publisher = "/calm";

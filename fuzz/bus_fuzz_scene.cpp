@@ -50,7 +50,8 @@ std::string number(double value)
 class SceneWriter
 {
 public:
-  SceneWriter(std::uint64_t number, const std::string& name) : dice_(number * 7919U + 17U)
+  SceneWriter(std::uint64_t number, const std::string& name)
+    : dice_(number * 7919U + 17U), limits_dice_(number * 104729U + 29U)
   {
     scene_.name = name;
   }
@@ -58,6 +59,7 @@ public:
   Scene write()
   {
     chooseLine();
+    chooseLimits();
     const std::size_t count = chooseCount();
     // What the bus can meet: about ten exchanges for each inverter.
     shortest_timeout_ = std::ceil(static_cast<double>(count) * 800.0 * scene_.character * 5.0) / 5.0;
@@ -114,6 +116,38 @@ private:
     head_ << "response_timeout: " << response_timeout_ << "\n";
   }
 
+  /// Dice of their own: what else happens on a bus does not depend on them.
+  void chooseLimits()
+  {
+    limits_ = limits_dice_.hits(0.5);
+    all_saturate_ = limits_ && limits_dice_.hits(0.3);
+    head_ << (all_saturate_ ? "limit: saturate\n" : "");
+  }
+
+  std::string limitsOf(InverterFacts& facts)
+  {
+    std::ostringstream text;
+    text.precision(12);
+    if (!limits_)
+    {
+      return "";
+    }
+    const double unit = std::fabs(facts.hz_per_unit);
+    facts.saturates = all_saturate_ || limits_dice_.hits(0.6);
+    if (facts.saturates || limits_dice_.hits(0.5))
+    {
+      facts.max_velocity = std::round((facts.highest_hz + limits_dice_.between(0.0, 1.5)) / unit * 1e4) / 1e4;
+      text << ", max_velocity: " << facts.max_velocity;
+    }
+    if (limits_dice_.hits(0.4))
+    {
+      facts.min_velocity = std::round(0.6 * facts.lowest_hz / unit * 1e4) / 1e4;
+      text << ", min_velocity: " << facts.min_velocity;
+    }
+    text << (facts.saturates && !all_saturate_ ? ", limit: saturate" : "");
+    return text.str();
+  }
+
   std::size_t chooseCount()
   {
     const std::size_t few = 1 + dice_.below(3);
@@ -161,6 +195,7 @@ private:
     std::ostringstream parameters;
     std::string more;
     setUp(facts, parameters, more);
+    more += limitsOf(facts);
     list_ << "  - {name: " << facts.name << ", node: " << facts.node << ", hz_per_unit: " << facts.hz_per_unit
           << ", command_timeout: " << facts.command_timeout << ", response_timeout: " << facts.response_timeout
           << (dice_.hits(0.2) ? ", stop_unexpected_motion: true" : "") << more << "}\n";
@@ -247,9 +282,18 @@ private:
       facts.own_delay = 0.02;
       parameters << ", F805: 0.02";
     }
+    if (limits_dice_.hits(0.3))
+    {
+      // FC90 is 0 while it is healthy.
+      facts.listed_trips = { 0, 1, 2 };
+      more += ", overrides: {status: {faulted: {register: 0xFC90, values: {0: 0, 1: 1, 2: 1}}}}";
+    }
   }
 
   Dice dice_;
+  Dice limits_dice_;
+  bool limits_ = false;
+  bool all_saturate_ = false;
   Scene scene_;
   double response_timeout_ = 0.1;
   double shortest_timeout_ = 0.6;

@@ -3,6 +3,7 @@
 import glob
 import os
 import re
+import shlex
 import subprocess
 import unittest
 
@@ -33,6 +34,28 @@ def members(source, struct):
     body = re.search(r'struct %s\n\{\n(.*?)\n\};' % struct, source, re.DOTALL).group(1)
     found = re.findall(r'^  ([\w:<>]+) (\w+)(?:\s*=\s*([^;]+)|\{([^;]*)\})?;', body, re.MULTILINE)
     return {name: (kind, (value or braces).strip()) for kind, name, value, braces in found}
+
+
+def commands(program, *words):
+    """Command lines of README and docs that begin so, as a shell splits them."""
+    found = []
+    for path in [os.path.join(ROOT, 'README.md')] + sorted(glob.glob(os.path.join(ROOT, 'docs', '*.md'))):
+        # A line of a block, or what stands between back-ticks.
+        for line in re.findall(r'^(%s .*)$|`(%s [^`]*)`' % (program, program), read(path), re.MULTILINE):
+            arguments = shlex.split(' '.join(line).strip(), comments=True)
+            if arguments[1:1 + len(words)] == list(words):
+                found.append(arguments)
+    return found
+
+
+def fields(path):
+    """Fields of a message, or of a service's request: name to type."""
+    lines = read(*path).split('\n---')[0].splitlines()
+    return {match.group(2): match.group(1) for match in
+            (re.match(r'(\w+(?:\[\])?) (\w+)\s*(?:#.*)?$', line) for line in lines) if match}
+
+
+ACCEPTED = {'string': str, 'bool': bool, 'uint8': int, 'float64': (int, float)}
 
 
 TYPES = {'std::string': 'string', 'double': 'double', 'int': 'int', 'unsigned': 'int', 'bool': 'bool',
@@ -152,6 +175,30 @@ class Readme(unittest.TestCase):
         self.assertLessEqual(set(parameters), set(self.listed('BUS_KEYS')))
         for entry in parameters['scan_list'] + [parameters['defaults']]:
             self.assertLessEqual(set(entry), set(['name', 'node'] + self.listed('sharedKeys')))
+
+    def testServiceCallsAreAcceptedAsTyped(self):
+        kinds = {row[0].split('/')[-1].lstrip('~'): row[1] for row in table(self.readme, '## Services')}
+        calls = commands('rosservice', 'call')
+        self.assertGreater(len(calls), 4)
+        for call in calls:
+            self.assertEqual(len(call), 4, 'one argument in quotes, also for a service that needs none: %s' % call)
+            package, kind = kinds[call[2].split('/')[-1]].split('/')
+            request = fields(('srv', kind + '.srv')) if package == 'inverter_bus' else {}
+            arguments = yaml.safe_load(call[3])
+            self.assertIsInstance(arguments, dict, call)
+            for name, given in arguments.items():
+                self.assertIn(name, request, call)
+                self.assertIsInstance(given, ACCEPTED[request[name]], call)
+
+    def testPublishedMessagesAreAcceptedAsTyped(self):
+        lines = commands('rostopic', 'pub')
+        self.assertTrue(any('-- -' in ' '.join(line) for line in lines), 'a negative velocity')
+        for line in lines:
+            words = line[2:]
+            behind = words.index('--') if '--' in words else len(words)
+            for option in (word for word in words[:behind] if word.startswith('-')):
+                self.assertIn(option, ('-r', '-1'), 'rostopic takes it for an option: %s' % line)
+            self.assertIsInstance(yaml.safe_load(words[-1]), float, line)
 
     def testProfilesAreThoseOfTheRepository(self):
         section = self.readme.split('\n## ')[0]

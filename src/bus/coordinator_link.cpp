@@ -291,7 +291,7 @@ void Coordinator::loseEverybody(TimePoint now, std::uint16_t error_id)
     if (!inverter->offline())
     {
       inverter->goOffline(error_id);
-      wentOffline(now, *inverter, error_id);
+      wentOffline(now, *inverter);
     }
     inverter->noteExchangeError(error_id);
   }

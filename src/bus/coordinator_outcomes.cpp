@@ -84,6 +84,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
   inverter.noteExchange(reply);
   if (current.request.expects_reply)
   {
+    inverter.record.note(reply);
     noteLink(reply);
     noteConnection(reply.finished_at, current, reply);
   }
@@ -168,7 +169,7 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
   // Behind an older request that the gateway still works on it says nothing of this inverter (contract, 8.16).
   if (!behind_another_ && inverter.failed(now, error_id))
   {
-    wentOffline(now, inverter, error_id);
+    wentOffline(now, inverter);
   }
 }
 
@@ -177,7 +178,7 @@ void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t
 {
   if (!behind_another_ && inverter.failed(now, error_id, true))
   {
-    wentOffline(now, inverter, error_id);
+    wentOffline(now, inverter);
   }
   if (inverter.needsRead())
   {
@@ -185,13 +186,13 @@ void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t
   }
 }
 
-void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
 {
   scheduler_->eraseVelocity(inverter.index);
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id), inverter.config.name);
+    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(), inverter.config.name);
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())

@@ -173,7 +173,7 @@ TEST_F(Flood, refusedVelocitiesLogOneLineInFiveSecondsAndRefusedCallsNone)
   bus_.run(12.0);
   const std::vector<std::string> texts = bus_.logTexts();
   ASSERT_EQ(before + 2, texts.size());
-  EXPECT_NE(std::string::npos, texts[before].find("velocity 1e+09 is out of range")) << texts[before];
+  EXPECT_NE(std::string::npos, texts[before].find("velocity 1000000000 is out of range")) << texts[before];
   EXPECT_NE(std::string::npos, texts[before + 1].find("the last of 19999 since the line before")) << texts[before + 1];
 }
 }  // namespace

@@ -163,8 +163,9 @@ public:
   /// What makes the inverter's lamp yellow or red; empty: it is green.
   std::string findings(std::size_t index)
   {
+    const bus::InverterReport report = coordinator_.report(clock_.now()).inverters.at(index);
     std::string text;
-    for (const bus::Finding& finding : coordinator_.report(clock_.now()).inverters.at(index).findings)
+    for (const bus::Finding& finding : report.findings)
     {
       text += finding.text + "\n";
     }

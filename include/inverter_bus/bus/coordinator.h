@@ -272,7 +272,7 @@ private:
   void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id);
-  void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void wentOffline(TimePoint now, Inverter& inverter);
   void judgeRefresh(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);
   void publish(TimePoint now, const Inverter& inverter);

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/command_error.h"
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/link_record.h"
 #include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
@@ -97,6 +99,8 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  /// What came since the last complete status.
+  LinkRecord record;
   LostWrites lost_writes;
 
   // --- link -------------------------------------------------------------------------------------------------------
@@ -159,6 +163,8 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
+  /// What the log says when it goes offline.
+  std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
   /// After a complete refresh.
@@ -171,6 +177,8 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
+  /// As a member of a group that was refused for the sake of another one.
+  void refuseForOther(std::uint16_t error_id, const std::string& reasons);
   void acceptCommand();
   /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
   /// would hide it.
@@ -193,7 +201,6 @@ public:
   unsigned probes = 0;
 
 private:
-  void showError(InverterStatus& status) const;
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
@@ -203,7 +210,12 @@ private:
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
-  std::vector<Finding> errors() const;
+  std::vector<Finding> errors(TimePoint now) const;
+  std::string exchangeText() const;
+  std::string offlineText(TimePoint now) const;
+  std::string silenceText() const;
+  Obstacles obstacles() const;
+  void showError(TimePoint now, InverterStatus& status) const;
 
   int offline_after_;
   /// Since its last status words; counted up to offline_after_.
@@ -216,8 +228,7 @@ private:
   std::uint16_t exchange_error_ = 0;
   /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
   std::uint8_t gateway_code_ = 0;
-  std::uint16_t command_error_ = 0;
-  std::string command_error_text_;
+  CommandError command_error_;
   std::uint16_t velocity_error_ = 0;
   std::string velocity_error_text_;
   TimePoint last_reply_;

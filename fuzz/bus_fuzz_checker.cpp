@@ -505,9 +505,11 @@ void Checker::checkBackground(TimePoint now)
     waiting = waiting || (lane.first_time && lane.online && unread);
   }
   const bool counts = facts_.reads && !facts_.reads_run && !facts_.loopback;
-  if (!waiting || !counts || facts_.reads_parameter)
+  // One that a drive is told, and that it refuses for a while, has had the turn of one that is to be read.
+  const bool its_turn = facts_.reads_parameter || facts_.writes_setting;
+  if (!waiting || !counts || its_turn)
   {
-    without_background_ = facts_.reads_parameter || !waiting ? 0 : without_background_;
+    without_background_ = its_turn || !waiting ? 0 : without_background_;
     return;
   }
   if (++without_background_ > BACKGROUND_EVERY + READS_BY_DEADLINE * supervised + 2)

@@ -169,6 +169,8 @@ private:
     bool stop_under_way = false;  ///< at the last lock a stop had been sent already
     std::optional<TimePoint> zero_due;
     TimePoint stop_sent;
+    /// Stops in a row since its last RUN, none of them long after the one before.
+    unsigned stops_in_a_row = 0;
     TimePoint stop_replied;
     TimePoint run_read;
     TimePoint confirmed_at;  ///< RUN was read as it is after a stop was acknowledged

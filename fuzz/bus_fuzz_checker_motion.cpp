@@ -20,6 +20,9 @@ constexpr double TOLERANCE_S = 1e-3;
 // A 3G3JE wants 5 ms of silence between the decision and the first byte.
 constexpr double QUIET_S = 0.006;
 constexpr double TURNAROUND_S = 0.03;  // after a broadcast, with a margin
+// Who stops again and again what is at rest lets other exchanges through.
+constexpr unsigned FLOOD_OF_STOPS = 4;
+constexpr double FLOOD_PAUSE_S = 1.0;
 constexpr double ZERO_BOUND_EXCHANGES = 8.0;
 constexpr double SHORTEST_SHUTDOWN_S = 2.0;  // contract, rule 4.4
 constexpr double LONGEST_SHUTDOWN_S = 10.0;
@@ -107,7 +110,8 @@ void Checker::stopAsked(TimePoint now, std::optional<std::size_t> index)
       continue;
     }
     Lane& lane = lanes_[one];
-    const bool counts = !lane.stopping && !lane.due;
+    const bool flood = lane.stops_in_a_row >= FLOOD_OF_STOPS && now - lane.stop_sent < seconds(FLOOD_PAUSE_S);
+    const bool counts = !lane.stopping && !lane.due && !flood;
     if (!online(one))
     {
       // It is tried once at once, then it is the probe.
@@ -209,7 +213,7 @@ void Checker::checkStopFirst(TimePoint now)
   {
     fail(now, "a stop is the next frame on the wire",
          "a stop of " + nameOf(waiting) + " waits since " + text(toSeconds(now - *lanes_[waiting].due) * 1e3) +
-             " ms, and another frame goes");
+             " ms, and another frame goes: " + simulation::toHex(request_));
   }
 }
 
@@ -260,6 +264,7 @@ void Checker::noteStopFrame(TimePoint now, std::size_t index)
   }
   lane.due.reset();
   lane.zero_due.reset();
+  lane.stops_in_a_row = now - lane.stop_sent < seconds(FLOOD_PAUSE_S) ? lane.stops_in_a_row + 1 : 1;
   lane.stop_sent = now;
   lane.stopping = true;
   lane.run_answered = false;
@@ -341,6 +346,7 @@ void Checker::checkRun(TimePoint now, Lane& lane)
     }
   }
   lane.run_sent = true;
+  lane.stops_in_a_row = 0;
   // Whatever ran before, nobody knows until this one is answered.
   lane.run_answered = lane.run_answered && repeated;
 }

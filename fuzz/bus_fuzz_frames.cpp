@@ -36,6 +36,7 @@ constexpr unsigned HITACHI_TRIPS = 0x0011;
 // VF-S15: E6581913.
 constexpr unsigned FA00 = 0xFA00;
 constexpr unsigned FA01 = 0xFA01;
+constexpr unsigned FA87 = 0xFA87;  // whether set-points go to the EEPROM
 constexpr unsigned FD00 = 0xFD00;
 constexpr unsigned BLOCK_WRITE = 0x1870;
 constexpr unsigned BLOCK_READ = 0x1875;
@@ -111,6 +112,10 @@ void readToshiba(const Bytes& frame, unsigned function, RequestFacts& facts)
   else if (function == WRITE_REGISTER && facts.address == FA01)
   {
     facts.set_hertz = modbusWord(frame, 4) / 100.0;
+  }
+  else if (function == WRITE_REGISTER && facts.address == FA87)
+  {
+    facts.writes_setting = true;
   }
   else if (function == WRITE_REGISTERS && facts.address == BLOCK_WRITE)
   {

@@ -33,6 +33,8 @@ struct RequestFacts
   bool reads_frequency = false;
   bool reads_run = false;        ///< the RUN command as the drive holds it from the bus
   bool reads_parameter = false;  ///< no status: settings, trip memory, parameters
+  /// Tells the drive once after it has come how it is to work (VF-S15: FA87); in the lowest class, as settings are read.
+  bool writes_setting = false;
   unsigned address = 0;
 
   /// Part of a velocity or a stop: what moves a motor or takes RUN off.

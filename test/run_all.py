@@ -198,7 +198,7 @@ def lint_programs(build):
                       [word for name in ignored for word in ('--ignore', name)] + [ROOT])
     if shutil.which('shellcheck'):
         scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/install_dependencies', 'scripts/common.sh',
-                   '.ci/run']
+                   '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])
@@ -232,6 +232,7 @@ def fuzz_programs(build, seeds=1000):
 
 def other_programs(build):
     yield python_program('install', 'test/install_test.py', build)
+    yield python_program('programs', 'test/command_line_test.py', build)
     for path in sorted(glob.glob(os.path.join(ROOT, 'test', 'peers', '*_test.py'))):
         yield python_program('peer', os.path.relpath(path, ROOT), build, 180.0)
     yield Program('demo', 'demo_once', ['bash', os.path.join(ROOT, 'scripts', 'demo'), '--once', '--build', build],

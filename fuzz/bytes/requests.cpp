@@ -351,7 +351,8 @@ private:
     {
       velocities.push_back(number(source));
     }
-    bus::VelocityGroup group = bus::resolveGroup(names, velocities, index_by_name_);
+    const auto stops = [this](std::size_t index, double velocity) { return coordinator_.stops(index, velocity); };
+    bus::VelocityGroup group = bus::resolveGroup(names, velocities, index_by_name_, stops);
     require(group.targets.size() <= index_by_name_.size(), "more targets than inverters");
     bus::VelocityCommand command;
     command.targets = group.targets;
@@ -387,7 +388,7 @@ private:
     const std::vector<bus::InverterStatus> after = statuses();
     for (const auto& target : command.targets)
     {
-      const bool zero = target.second == 0.0;
+      const bool zero = coordinator_.stops(target.first, target.second);
       anything_accepted_ = anything_accepted_ || zero;
       require(zero || !watched_ || sameState(before[target.first], after[target.first]),
               "a refused velocity has changed something");

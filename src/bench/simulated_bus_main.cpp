@@ -197,6 +197,11 @@ int main(int argc, char** argv)
     play(values);
     return EXIT_SUCCESS;
   }
+  catch (const po::error& error)
+  {
+    std::cerr << "simulated_bus: " << error.what() << "; simulated_bus --help shows what there is" << std::endl;
+    return EXIT_FAILURE;
+  }
   catch (const std::exception& error)
   {
     std::cerr << "simulated_bus: " << error.what() << std::endl;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "inverter_bus/wire/shown_number.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -130,7 +132,8 @@ Duration Budget::longestExchange() const
       longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
-  return longest;
+  // One that breaks off, or pauses, ends a pause later.
+  return longest + line_.patience();
 }
 
 Duration Budget::worstStop() const
@@ -217,11 +220,18 @@ Budget::Figures Budget::figures() const
   return figures;
 }
 
+std::string Budget::behindGateway() const
+{
+  return configuration_.bus.modbus_tcp ? " and up to " + milliseconds(seconds(configuration_.bus.gateway_timeout)) +
+                                             " for each inverter that does not answer"
+                                       : "";
+}
+
 std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
   findings.push_back({ Level::Ok, "bus budget: status cycle " + milliseconds(cycle()) + ", worst stop latency " +
-                                      milliseconds(worstStop()) +
+                                      milliseconds(worstStop()) + behindGateway() +
                                       " (plus the ramp), longest gap between two frames to "
                                       "an inverter " +
                                       milliseconds(longestGap()) });
@@ -230,7 +240,7 @@ std::vector<Finding> Budget::findings() const
     const InverterConfig& config = configuration_.bus.inverters[index];
     if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
     {
-      findings.push_back({ Level::Warn, config.name + ": command_timeout " + std::to_string(config.command_timeout) +
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + wire::shownNumber(config.command_timeout) +
                                             " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
     }
     const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;

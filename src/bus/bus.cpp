@@ -207,6 +207,11 @@ std::uint16_t Bus::command(const VelocityCommand& command)
   return error_id;
 }
 
+bool Bus::stops(std::size_t index, double velocity) const
+{
+  return implementation_->coordinator.stops(index, velocity);
+}
+
 void Bus::refuse(const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text, bool group)
 {
   implementation_->ask(

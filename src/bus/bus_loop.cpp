@@ -12,7 +12,11 @@ namespace
 {
 // An adapter that is plugged in again is found within this time.
 constexpr double OPEN_PERIOD_S = 0.2;
-constexpr double IN_USE_PATIENCE_S = 15.0;
+// A connection that its other end has closed is tried again so often, for as long as motors run on.
+constexpr double RESUME_PERIOD_S = 0.05;
+// Every try moves the RTS line of whoever has the port.
+constexpr double IN_USE_PERIOD_S = 1.0;
+constexpr double IN_USE_PATIENCE_S = 30.0;
 }  // namespace
 
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
@@ -33,38 +37,90 @@ void BusLoop::close()
 TimePoint BusLoop::openPort()
 {
   const TimePoint now = clock_.now();
-  if (now < next_open_)
+  TimePoint not_before;
   {
+    // Statuses go on at their pace, however seldom the port is tried.
     const std::lock_guard<std::mutex> guard(mutex_);
     coordinator_.tick(now);
-    return next_open_;
+    not_before = coordinator_.resuming() ? now : std::max(next_open_, coordinator_.openNotBefore());
   }
-  next_open_ = now + seconds(OPEN_PERIOD_S);
+  if (now < not_before && !opening_)
+  {
+    return std::min(not_before, now + seconds(OPEN_PERIOD_S));
+  }
   std::string error;
   const wire::OpenResult result = line_.open(error);
-  const std::lock_guard<std::mutex> guard(mutex_);
-  if (result == wire::OpenResult::Opened)
+  opening_ = result == wire::OpenResult::Pending;
+  if (!opening_)
   {
-    ever_opened_ = true;
-    coordinator_.portOpened(clock_.now());
-    return now;
+    next_open_ = now + seconds(result == wire::OpenResult::InUse ? IN_USE_PERIOD_S : OPEN_PERIOD_S);
   }
-  coordinator_.portMissing(now, error, result == wire::OpenResult::InUse);
-  coordinator_.tick(now);
-  if (result != wire::OpenResult::InUse || ever_opened_)
+  const std::lock_guard<std::mutex> guard(mutex_);
+  return noteOpening(result, error);
+}
+
+/// How an attempt to open the port ended, and when the next round is.
+TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error)
+{
+  const TimePoint now = clock_.now();
+  switch (result)
+  {
+    case wire::OpenResult::Opened:
+      ever_opened_ = true;
+      coordinator_.portOpened(now);
+      return now;
+    case wire::OpenResult::Pending:
+      coordinator_.portPending(now);
+      return now;
+    default:
+      break;
+  }
+  const bool in_use = result == wire::OpenResult::InUse;
+  coordinator_.portMissing(now, error, in_use);
+  judgePatience(now, in_use);
+  return now + seconds(coordinator_.resuming() ? RESUME_PERIOD_S : OPEN_PERIOD_S);
+}
+
+/// A port that was never ours may stay somebody else's; one that was will come back.
+void BusLoop::judgePatience(TimePoint now, bool in_use)
+{
+  if (!in_use || ever_opened_)
   {
     in_use_since_.reset();
-    return next_open_;
+    return;
   }
   in_use_since_ = in_use_since_ ? in_use_since_ : std::optional<TimePoint>(now);
   given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
-  return next_open_;
 }
 
-/// One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
-void BusLoop::lose()
+/// Reasons of ours to give up an open port and open it anew; true if there was one.
+bool BusLoop::reopen()
 {
-  line_.close();
+  bool abandon = false;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    const TimePoint now = clock_.now();
+    if (coordinator_.telnetOver(now))
+    {
+      coordinator_.closedForTelnet(now);
+      abandon = true;
+    }
+    else if (coordinator_.renewalDue(now))
+    {
+      coordinator_.renewing(now);
+      abandon = true;
+    }
+    else if (!line_.mustReopen().empty())
+    {
+      coordinator_.reopening(now);
+      abandon = true;
+    }
+  }
+  if (abandon)
+  {
+    line_.abandon();
+  }
+  return abandon;
 }
 
 TimePoint BusLoop::step()
@@ -75,6 +131,10 @@ TimePoint BusLoop::step()
   }
   // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
   const bool there = line_.settle();
+  if (there && reopen())
+  {
+    return clock_.now();
+  }
   std::optional<Coordinator::Exchange> exchange;
   TimePoint wake;
   {
@@ -87,7 +147,8 @@ TimePoint BusLoop::step()
     coordinator_.noteLine(now, line_.counters(), line_.echoFound());
     if (!there)
     {
-      coordinator_.portLost(now);
+      coordinator_.portClosed(now);
+      coordinator_.tick(now);
     }
     else if ((exchange = coordinator_.next(now, wake)))
     {
@@ -96,8 +157,8 @@ TimePoint BusLoop::step()
   }
   if (!there)
   {
-    lose();
-    return next_open_;
+    line_.close();
+    return clock_.now();
   }
   if (!exchange)
   {
@@ -111,7 +172,8 @@ TimePoint BusLoop::step()
   }
   if (reply.outcome == wire::Outcome::PortLost)
   {
-    lose();
+    // One that lasted is opened again at once, one that fails as soon as it is open (I/O errors) at the period's pace.
+    line_.close();
   }
   return clock_.now();
 }

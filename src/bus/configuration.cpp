@@ -65,12 +65,8 @@ std::string readProtocol(const Section& section, const BusConfig& bus)
 
 unsigned readBaudRate(const Section& section, unsigned fallback)
 {
-  std::vector<std::int64_t> rates;
-  for (const unsigned rate : wire::supportedBaudRates())
-  {
-    rates.push_back(rate);
-  }
-  return static_cast<unsigned>(section.choice("baud_rate", fallback, rates));
+  return static_cast<unsigned>(
+      section.integer("baud_rate", fallback, wire::SLOWEST_BAUD_RATE, wire::FASTEST_BAUD_RATE));
 }
 
 wire::Parity readParity(const Section& section, const std::string& fallback)

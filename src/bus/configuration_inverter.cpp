@@ -71,9 +71,51 @@ std::vector<std::string> readConfirm(const Section& entry)
   return names;
 }
 
+/// What can't be left out, and what does not exist, is a mistake: a safety word that somebody believes skipped, or a field
+/// that he believes read, is neither.
+void checkSkipped(const Section& entry, const std::string& field)
+{
+  const std::string allowed = "fields of the status that nothing depends on: " +
+                              join({ drive::skippableFields().begin(), drive::skippableFields().end() });
+  if (drive::protectedFields().count(field) != 0)
+  {
+    entry.fail("skip", "holds '" + field + "', which the driver can't do without", allowed);
+  }
+  if (drive::skippableFields().count(field) == 0)
+  {
+    entry.fail("skip", "holds '" + wire::shown(field) + "', which is no field of the status", allowed);
+  }
+}
+
+std::vector<std::string> readSkip(const Section& entry)
+{
+  const char* const allowed = "a list of status fields";
+  const Value* value = entry.find("skip");
+  if (value == nullptr || value->type == Value::Type::None)
+  {
+    return {};
+  }
+  if (value->type != Value::Type::List)
+  {
+    entry.fail("skip", "is no list", allowed);
+  }
+  std::vector<std::string> fields;
+  for (const Value& field : value->list)
+  {
+    if (field.type != Value::Type::Text)
+    {
+      entry.fail("skip", "holds something else than names", allowed);
+    }
+    checkSkipped(entry, field.text);
+    fields.push_back(field.text);
+  }
+  return fields;
+}
+
 drive::ProfileChanges readChanges(const Section& entry)
 {
   drive::ProfileChanges changes;
+  changes.skip = readSkip(entry);
   changes.place = entry.placeOf("drive");
   changes.confirm = readConfirm(entry);
   changes.confirm_place = entry.placeOf("confirm");
@@ -150,7 +192,7 @@ double readHzPerUnit(const Section& entry)
   if (std::abs(hz_per_unit) < SMALLEST)
   {
     entry.fail("hz_per_unit", hz_per_unit == 0.0 ? "is 0" : "is too small",
-               "a number from 1e-06 to 1e+06 Hz per unit, negative where the drive is mounted mirrored, never 0");
+               "a number from 0.000001 to 1000000 Hz per unit, negative where the drive is mounted mirrored, never 0");
   }
   return hz_per_unit;
 }
@@ -195,34 +237,9 @@ std::vector<int> readBlock(const Section& entry, const std::vector<int>& fallbac
   return codes;
 }
 
-std::vector<std::string> readSkip(const Section& entry)
-{
-  const char* const allowed = "a list of status fields";
-  const Value* value = entry.find("skip");
-  if (value == nullptr || value->type == Value::Type::None)
-  {
-    return {};
-  }
-  if (value->type != Value::Type::List)
-  {
-    entry.fail("skip", "is no list", allowed);
-  }
-  std::vector<std::string> fields;
-  for (const Value& field : value->list)
-  {
-    if (field.type != Value::Type::Text)
-    {
-      entry.fail("skip", "holds something else than names", allowed);
-    }
-    fields.push_back(field.text);
-  }
-  return fields;
-}
-
 void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& config)
 {
   config.limit = readLimit(entry, bus.limit);
-  config.skip = readSkip(entry);
   config.rated_current = entry.number("rated_current", Range{ 0.0, 10000.0, true, "A" });
   config.rated_voltage = entry.number("rated_voltage", Range{ 0.0, 10000.0, true, "V" });
   config.configure_block = entry.boolean("configure_block", config.configure_block);
@@ -266,6 +283,7 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   entry.require("drive", "the name of a profile or an absolute path to one");
   config.drive = entry.text("drive", "");
   config.changes = readChanges(entry);
+  config.skip = config.changes.skip;
   drive::Drive drive(loadProfileOf(entry, config, profile_directory));
   const drive::Profile& profile = drive.profile();
   checkProtocol(entry, profile, bus);

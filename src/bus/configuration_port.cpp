@@ -11,7 +11,7 @@ namespace bus
 namespace
 {
 // A gateway may cut a frame into segments, and the network may hold one back.
-constexpr double NETWORK_DELIVERY_S = 0.1;
+constexpr double NETWORK_PAUSE_S = 0.1;
 }  // namespace
 
 std::unique_ptr<wire::Protocol> makeProtocol(const BusConfig& config)
@@ -31,8 +31,11 @@ std::unique_ptr<wire::Port> makePort(const BusConfig& config)
 wire::LineTiming makeTiming(const BusConfig& config)
 {
   const unsigned bits = wire::bitsPerCharacter(config.serial);
-  return config.gateway ? wire::LineTiming(config.serial.baud_rate, bits, seconds(NETWORK_DELIVERY_S))
-                        : wire::LineTiming(config.serial.baud_rate, bits);
+  if (!config.gateway && !config.pause_in_reply)
+  {
+    return wire::LineTiming(config.serial.baud_rate, bits);
+  }
+  return wire::LineTiming(config.serial.baud_rate, bits, seconds(config.pause_in_reply.value_or(NETWORK_PAUSE_S)));
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "configuration_keys.h"
 #include "inverter_bus/config/scalar.h"
 #include "inverter_bus/wire/shown.h"
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -20,12 +20,9 @@ namespace
 constexpr std::size_t LONGEST_VALUE = 100;
 constexpr std::size_t LONGEST_MESSAGE = 2000;
 
-/// Shortest of the usual notations that reads like what the user wrote.
 std::string numberText(double number)
 {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.9g", number);
-  return buffer;
+  return wire::shownNumber(number, 9);
 }
 
 std::string rangeText(const Range& range)

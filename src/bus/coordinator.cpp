@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "inverter_bus/wire/shown_number.h"
+
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
 
@@ -28,20 +30,38 @@ constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
 
-/// At shutdown every stop is written before the first of them is read back: no motor waits for another's confirmation.
+/// At shutdown stops take turns: every one is written before the first of them is read back, so that no motor waits for
+/// another's confirmation; nor for one that somebody asks to be stopped again and again.
 bool goesBefore(const StopJob& stop, const StopJob& other)
 {
-  return std::make_pair(stop.attempts(), stop.written()) < std::make_pair(other.attempts(), other.written());
+  return std::make_pair(stop.attempts(), stop.lastSentAt()) < std::make_pair(other.attempts(), other.lastSentAt());
+}
+
+Duration longestResponseTimeout(const BusConfig& bus)
+{
+  double longest = bus.response_timeout;
+  for (const InverterConfig& inverter : bus.inverters)
+  {
+    longest = std::max(longest, inverter.response_timeout);
+  }
+  return seconds(longest);
 }
 }  // namespace
 
 Coordinator::Coordinator(const Configuration& configuration, const wire::Line& line)
-  : configuration_(configuration), line_(line), budget_(Budget(configuration, line).figures())
+  : configuration_(configuration)
+  , line_(line)
+  , budget_(Budget(configuration, line).figures())
+  , gateway_({ configuration.bus.modbus_tcp, seconds(configuration.bus.gateway_timeout),
+               longestResponseTimeout(configuration.bus) })
+  , link_(longestResponseTimeout(configuration.bus))
+  , refusals_(configuration.bus.inverters.size())
 {
   for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
   {
     inverters_.push_back(std::make_unique<Inverter>(index, configuration.bus.inverters[index],
-                                                    configuration.drives[index], configuration.bus.offline_after));
+                                                    configuration.drives[index], configuration.bus.offline_after,
+                                                    configuration.bus.retries));
   }
   Scheduler::Settings settings;
   settings.inverters = inverters_.size();
@@ -61,6 +81,10 @@ Coordinator::~Coordinator() = default;
 void Coordinator::tick(TimePoint now)
 {
   watchDeadMen(now);
+  for (const std::string& line : refusals_.takeLines(now))
+  {
+    log(Level::Warn, line);
+  }
   expireJobs(now);
   finishStopCalls(now);
   publishSlowly(now);
@@ -70,10 +94,11 @@ void Coordinator::watchDeadMen(TimePoint now)
 {
   for (const auto& inverter : inverters_)
   {
-    if (inverter->interlock.deadManDue(now) && !inverter->stop.pending())
+    // A stop that locks nothing (a 0, a RUN that got lost) may be pending: silence locks all the same.
+    if (inverter->interlock.deadManDue(now) && !inverter->interlock.stopPending())
     {
       requestStop(now, *inverter, StopMode::Decelerate, true,
-                  "no command for " + std::to_string(inverter->config.command_timeout) + " s (command_timeout)");
+                  refusals_.deadManReason(inverter->index, inverter->config.command_timeout));
     }
   }
 }
@@ -106,7 +131,9 @@ void Coordinator::publishSlowly(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     const bool away = inverter->offline() || inverter->unreadSinceReturn();
-    if (away && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
+    // Behind a gateway that is kept busy no refresh comes, but locks and stops are to be seen.
+    const bool held_up = !gateway_.free(now) && inverter->known();
+    if ((away || held_up) && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
     {
       publish(now, *inverter);
     }
@@ -117,10 +144,14 @@ void Coordinator::publishSlowly(TimePoint now)
   {
     meter_.cycle(scheduler_->cycleTime());
   }
-  if ((cycle_done && since >= seconds(BUS_STATUS_SHORTEST_S)) || since >= seconds(BUS_STATUS_LONGEST_S))
+  // A loss is told at once (contract, 8.16).
+  const bool connected = connected_ && !port_failing_;
+  const bool changed = connected != published_connected_;
+  if (changed || (cycle_done && since >= seconds(BUS_STATUS_SHORTEST_S)) || since >= seconds(BUS_STATUS_LONGEST_S))
   {
     outputs_.bus_statuses.push_back(busStatus(now));
     last_bus_status_ = now;
+    published_connected_ = connected;
   }
   published_cycle_ = scheduler_->cycles();
 }
@@ -146,8 +177,28 @@ std::vector<InverterView> Coordinator::views(TimePoint now) const
   for (const auto& inverter : inverters_)
   {
     views.push_back(inverter->view(now, budget_.deadline_margin));
+    views.back().stop_pending = views.back().stop_pending && !untested(*inverter);
+    views.back().stop_not_before = stopNotBefore(now, *inverter);
+    views.back().refresh_unanswered = gateway_.refreshUnanswered(now, inverter->index);
   }
   return views;
+}
+
+Pick Coordinator::pick(TimePoint now)
+{
+  Gate allowed = gate(now);
+  stopInsteadOfZeros(now);
+  if (shutting_down_)
+  {
+    return pickShutdown(now);
+  }
+  if (line_.telnetFound())
+  {
+    allowed.stops_only = true;
+    return scheduler_->next(now, views(now), allowed);
+  }
+  const auto check = pickCheck(now, allowed);
+  return check ? *check : scheduler_->next(now, views(now), allowed);
 }
 
 std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint& wake)
@@ -158,15 +209,15 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
     std::optional<Current> current = composeBroadcast();
     if (!current)
     {
-      const Pick pick = shutting_down_ ? pickShutdown(now) : scheduler_->next(now, views(now));
-      if (pick.what == Pick::What::Nothing)
+      const Pick chosen = pick(now);
+      if (chosen.what == Pick::What::Nothing)
       {
-        wake = std::max(earliestDeadMan(pick.wake), now);
+        wake = std::max(earliestDeadMan(chosen.wake), now);
         return std::nullopt;
       }
-      current = compose(now, pick);
+      current = compose(now, chosen);
     }
-    if (current && makeSafe(now, *current))
+    if (current && !mustWait(now, *current) && makeSafe(now, *current))
     {
       current_ = current;
       Exchange exchange;
@@ -184,11 +235,15 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
 
 std::optional<Coordinator::Current> Coordinator::composeBroadcast()
 {
-  if (!broadcast_due_)
+  // Who stops all again and again must not keep the single stops from being sent and confirmed.
+  const bool again = broadcast_last_;
+  broadcast_last_ = false;
+  if (!broadcast_due_ || again)
   {
     return std::nullopt;
   }
   broadcast_due_ = false;
+  broadcast_last_ = true;
   const Inverter& any = *inverters_.front();
   const drive::Step& step = any.drive.sequence("stop")->steps.front();
   Current current;
@@ -205,7 +260,8 @@ Pick Coordinator::pickShutdown(TimePoint now)
   const Inverter* best = nullptr;
   for (const auto& inverter : inverters_)
   {
-    const bool live = inverter->stop.pending() && !inverter->offline();
+    const bool may_go = inverter->stop.pending() && stopNotBefore(now, *inverter) <= now;
+    const bool live = may_go && !inverter->offline();
     if (live && (best == nullptr || goesBefore(inverter->stop, best->stop)))
     {
       best = inverter.get();
@@ -231,11 +287,22 @@ Pick Coordinator::pickShutdown(TimePoint now)
   if (best == nullptr)
   {
     pick.what = Pick::What::Nothing;
-    pick.wake = now;
+    pick.wake = gateway_.active() ? std::max(now, std::min(shutdown_deadline_, nextStop(now))) : now;
     return pick;
   }
   pick.inverter = best->index;
   return pick;
+}
+
+/// When the next frame of a stop may go that waits for a gateway.
+TimePoint Coordinator::nextStop(TimePoint now) const
+{
+  TimePoint at = TimePoint::max();
+  for (const auto& inverter : inverters_)
+  {
+    at = inverter->stop.pending() ? std::min(at, stopNotBefore(now, *inverter)) : at;
+  }
+  return at;
 }
 
 bool Coordinator::releaseDue(const Inverter& inverter) const
@@ -372,16 +439,21 @@ std::optional<Write> Coordinator::nextWrite(TimePoint now, const Inverter& inver
 
 std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, const Pick& pick)
 {
-  for (const std::size_t member : scheduler_->members(pick.command))
+  std::vector<std::size_t> members = scheduler_->members(pick.command);
+  // The member whose turn it is, and if it needs no frame any more, the next one.
+  std::rotate(members.begin(), std::lower_bound(members.begin(), members.end(), pick.inverter), members.end());
+  for (const std::size_t member : members)
   {
     Inverter& inverter = *inverters_[member];
     if (const auto write = nextWrite(now, inverter))
     {
       Current current;
       current.pick = pick;
+      current.pick.inverter = member;
       current.purpose = Purpose::Velocity;
       current.inverter = member;
       current.write = *write;
+      current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
       current.request = inverter.prepared(write->request);
       return current;
     }
@@ -488,7 +560,12 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     return stop_write || readBackSafely(inverter, current);
   }
   const TimePoint allowed = std::max(line_.mayAskAt(current.request), now + std::chrono::milliseconds(1));
-  if (current.purpose == Purpose::Velocity || current.purpose == Purpose::Job)
+  if (current.purpose == Purpose::Velocity)
+  {
+    // The other members of a group don't wait for it.
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed);
+  }
+  else if (current.purpose == Purpose::Job)
   {
     scheduler_->postpone(current.pick.command, allowed);
   }
@@ -554,8 +631,8 @@ void Coordinator::sent(TimePoint now)
   if (current_->purpose == Purpose::StopFrame && !current_->resync)
   {
     const auto latency = inverter.stop.sent(now);
-    // An inverter that can't be reached, or a port that was gone, is no measure of the scheduler's latency.
-    if (latency && !current_->pick.probe)
+    // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port that was gone, is no measure of the scheduler's latency.
+    if (latency && !current_->pick.probe && !gateway_.active())
     {
       noteStopLatency(*latency);
     }
@@ -577,9 +654,10 @@ Duration Coordinator::longestReplyDelay() const
 void Coordinator::noteStopLatency(Duration latency)
 {
   stop_latency_max_ = std::max(stop_latency_max_, latency);
-  if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64))
+  const Duration in_gateway = worstStop() - budget_.worst_stop - longestReplyDelay();
+  if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64) + in_gateway)
   {
-    outputs_.traces.push_back("stop took " + std::to_string(toSeconds(latency)) + " s to the wire");
+    outputs_.traces.push_back("stop took " + wire::shownDuration(latency) + " to the wire");
   }
 }
 }  // namespace bus

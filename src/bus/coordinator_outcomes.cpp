@@ -47,11 +47,28 @@ void Coordinator::done(const wire::Reply& reply)
   }
   const Current current = *current_;
   current_.reset();
-  if (reply.outcome == wire::Outcome::PortLost)
+  if (reply.outcome != wire::Outcome::PortLost)
+  {
+    ended(current, reply);
+    return;
+  }
+  if (!resumes(reply.finished_at, current.inverter))
   {
     portLost(reply.finished_at);
     return;
   }
+  // Lost for its station alone (contract, 8.9).
+  wire::Reply lost = reply;
+  lost.outcome = wire::Outcome::Timeout;
+  lost.error_id = wire::ERROR_TIMEOUT;
+  lost.connection_closed = true;
+  ended(current, lost);
+}
+
+/// The end of an exchange over a port that is there, or soon is again.
+void Coordinator::ended(const Current& current, const wire::Reply& reply)
+{
+  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::Timeout || reply.finished_at - opened_at_ > seconds(PORT_WORKS_AFTER_S))
   {
     portWorks();
@@ -64,6 +81,11 @@ void Coordinator::done(const wire::Reply& reply)
   }
   Inverter& inverter = *inverters_[current.inverter];
   inverter.noteExchange(reply.outcome);
+  if (current.request.expects_reply)
+  {
+    noteLink(reply);
+    noteConnection(reply.finished_at, current, reply);
+  }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
     log(Level::Ok, inverter.config.name + ": online");
@@ -129,13 +151,31 @@ void Coordinator::finishExchange(const Current& current, const wire::Reply& repl
     return;
   }
   scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, alive(reply));
+  if (current.pick.probe && reply.outcome != wire::Outcome::Ok)
+  {
+    scheduler_->chargeProbe(reply.finished_at, probePrice(current, reply));
+  }
 }
 
 void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
-  if (inverter.failed(now, error_id))
+  // Behind an older request that the gateway still works on it says nothing of this inverter (contract, 8.16).
+  if (!behind_another_ && inverter.failed(now, error_id))
   {
     wentOffline(now, inverter, error_id);
+  }
+}
+
+/// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
+void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  if (inverter.failed(now, error_id, true))
+  {
+    wentOffline(now, inverter, error_id);
+  }
+  if (inverter.needsRead())
+  {
+    scheduler_->readSoon(inverter.index);
   }
 }
 
@@ -167,14 +207,52 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     inverter.movement.forgetWords();
     return;
   }
+  const bool write = !current.resync && !inverter.stop.written();
+  if (reply.connection_closed && !inverter.offline())
+  {
+    // It counts no try: the same frame goes first over the next connection.
+    noteLost(reply.finished_at, inverter, reply.error_id);
+    return;
+  }
+  if (gateway_.active() && alive(reply))
+  {
+    const auto latency = inverter.stop.answered(reply.finished_at);
+    if (latency && !current.pick.probe)
+    {
+      noteStopLatency(*latency);
+    }
+  }
+  if (write && gateway_.motionUntil(reply.sent_at, current.inverter))
+  {
+    inverter.stop.writeOnceMore();
+    inverter.interlock.stopRequested();
+    return;
+  }
   const StopJob::Progress progress = inverter.stop.done(reply, current.may_be_late);
+  if (write && reply.outcome == wire::Outcome::Ok && !current.may_be_late)
+  {
+    inverter.lost_writes.acknowledged();
+  }
   if (progress == StopJob::Progress::Confirmed)
   {
     stopConfirmed(reply.finished_at, inverter);
   }
-  if (!alive(reply))
+  if (alive(reply))
+  {
+    return;
+  }
+  if (write)
+  {
+    noteLostWrite(reply.finished_at, inverter, reply.error_id);
+  }
+  else
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+  const bool too_many = write && inverter.lost_writes.lost();
+  if (too_many && !inverter.offline())
+  {
+    writesLost(reply.finished_at, inverter);
   }
 }
 
@@ -193,42 +271,82 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     {
       inverter.settings.commanded();
     }
-    inverter.velocity_tries = 0;
+    inverter.lost_writes.acknowledged();
     ++inverter.velocity_frames;
     finishVelocity(current, reply);
     return;
   }
   inverter.movement.doubtful(current.write);
-  if (repeat(inverter.velocity_tries, reply) && !cancelled)
+  const bool lost = !alive(reply);
+  // A loop-back that was lost writes nothing.
+  const bool too_many = lost && !current.resync && inverter.lost_writes.lost();
+  const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
+  if (again && !cancelled)
   {
+    // The other members of a group go on without it.
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now);
     finishExchange(current, reply, true);
     return;
   }
-  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
   scheduler_->eraseVelocity(current.inverter);
   finishExchange(current, reply, !scheduler_->members(current.pick.command).empty());
   if (reply.outcome == wire::Outcome::Ok)
   {
     return;
   }
+  inverter.lost_writes.velocityEnded();
+  if (lost)
+  {
+    noteLostWrite(now, inverter, reply.error_id);
+  }
   if (!cancelled)
   {
-    inverter.refuseCommand(reply.error_id, refusalText(inverter, reply.error_id));
-    inverter.movement.giveUp();
-    if (!inverter.movement.runPossible())
-    {
-      inverter.interlock.resting();
-    }
-    if (zero || current.write.starts)
-    {
-      // Nobody knows whether the motor runs: it shall not.
-      requestStop(now, inverter, StopMode::Decelerate, false, "");
-    }
+    failVelocity(current, reply, too_many);
   }
-  if (!alive(reply))
+}
+
+/// It is not sent again.
+void Coordinator::failVelocity(const Current& current, const wire::Reply& reply, bool too_many_lost)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (inverter.offline())
   {
-    noteLost(now, inverter, reply.error_id);
+    return;
   }
+  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
+  inverter.velocityFailed(reply.error_id, refusalText(inverter, reply.error_id));
+  inverter.movement.giveUp();
+  if (!alive(reply) && (too_many_lost || inverter.movement.runPossible()))
+  {
+    writesLost(reply.finished_at, inverter);
+    return;
+  }
+  if (!inverter.movement.runPossible())
+  {
+    inverter.interlock.resting();
+  }
+  if (zero || current.write.starts)
+  {
+    // Nobody knows whether the motor runs: it shall not.
+    requestStop(reply.finished_at, inverter, StopMode::Decelerate, false, "");
+  }
+  if (current.write.starts)
+  {
+    inverter.stop.hold();
+  }
+}
+
+/// Contract, 8.1: what can't be written to can't be commanded, however well it answers reads.
+void Coordinator::writesLost(TimePoint now, Inverter& inverter)
+{
+  const std::string text = inverter.lost_writes.text();
+  if (!inverter.lost_writes.raised())
+  {
+    log(Level::Error, inverter.config.name + ": stopping and locking: " + text);
+  }
+  inverter.lost_writes.raise();
+  inverter.velocityFailed(wire::ERROR_TIMEOUT, text);
+  requestStop(now, inverter, StopMode::Decelerate, true, "");
 }
 
 /// What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
@@ -269,6 +387,10 @@ void Coordinator::finishVelocity(const Current& current, const wire::Reply& repl
   Inverter& inverter = *inverters_[current.inverter];
   const bool complete = !inverter.movement.next();
   const bool too_long = inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  if (complete)
+  {
+    inverter.velocityConfirmed();
+  }
   if (complete || too_long)
   {
     scheduler_->eraseVelocity(current.inverter);
@@ -392,6 +514,10 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     inverter.refresh_tries = 0;
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
+    if (reply.outcome == wire::Outcome::Ok && inverter.lost_writes.readAnswered())
+    {
+      log(Level::Error, inverter.config.name + ": stopped and locked: " + inverter.lost_writes.text());
+    }
     finishExchange(current, reply, more);
     inverter.noteStatus(reply, more);
     if (more)
@@ -410,7 +536,8 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     }
     return;
   }
-  if (repeat(inverter.refresh_tries, reply))
+  // One that has lost as many writes as make a drive offline is not asked twice.
+  if (!inverter.needsRead() && repeat(inverter.refresh_tries, reply))
   {
     finishExchange(current, reply, true);
     return;
@@ -489,19 +616,35 @@ void Coordinator::configureBlock(TimePoint now, Inverter& inverter)
 
 void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
+  link_.answered();
+  const auto request = gateway_.answeredLate(now, late.ticket);
+  const bool alone = !gateway_.active() || (request && request->alone);
+  if (request && request->alone && inverters_[request->inverter]->offline())
+  {
+    scheduler_->chargeProbe(now, gateway_.block());
+  }
+  if (request && request->risk == GatewayRisk::Stop)
+  {
+    const auto latency = inverters_[request->inverter]->stop.answered(now);
+    noteStopLatency(latency.value_or(Duration::zero()));
+  }
   for (const auto& inverter : inverters_)
   {
-    if (inverter->config.node != late.station)
+    if (inverter->config.node != late.station || late.gateway_code != 0)
     {
       continue;
     }
-    inverter->lateReply(late.delay);
+    if (late.delay && alone)
+    {
+      inverter->lateReply(*late.delay);
+    }
     if (inverter->offline())
     {
       wire::Reply sign_of_life;
       sign_of_life.outcome = wire::Outcome::Ok;
       sign_of_life.finished_at = now;
-      sign_of_life.turnaround = std::min(late.delay, seconds(inverter->config.response_timeout));
+      sign_of_life.turnaround =
+          std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
       log(Level::Ok, inverter->config.name + ": online (its reply came late)");
     }
@@ -528,8 +671,12 @@ void Coordinator::portOpened(TimePoint now)
     ++reconnects_;
   }
   ever_opened_ = true;
-  scheduler_->restartCycle(now);
-  if (!port_failing_)
+  link_.opened(now);
+  const bool same = connection_.resuming();
+  // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
+  scheduler_->restartCycle(now, !same && connection_.closedUnused() == 0);
+  connection_.opened(now, onlineInverters());
+  if (!port_failing_ && !same)
   {
     port_complained_ = false;
     port_error_.clear();
@@ -557,6 +704,11 @@ void Coordinator::portWorks()
 
 void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_use)
 {
+  if (connection_.resuming() && connection_.notOpen(now) == ConnectionWatch::Verdict::Resume)
+  {
+    return;
+  }
+  connected_ = false;
   last_error_ = wire::ERROR_PORT_LOST;
   port_failing_ = false;
   port_error_ = error;
@@ -571,27 +723,37 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
 
 void Coordinator::portLost(TimePoint now)
 {
-  current_.reset();
-  if (connected_ && !port_failing_)
+  const std::string& port = configuration_.bus.port;
+  const bool unused = !port_works_;
+  if (unused && configuration_.bus.gateway)
   {
-    port_failing_ = !port_works_;
-    port_error_ = "port " + configuration_.bus.port +
-                  (port_failing_ ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone");
+    const std::string words = line_.peerWords();
+    portFails(now, "port " + port + " is closed by its other end as soon as it is open" +
+                       (words.empty() ? "" : ", which says '" + words + "'") +
+                       ": another client may hold it, or it serves another protocol mode");
+    return;
+  }
+  portFails(now,
+            "port " + port + (unused ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone"));
+}
+
+/// \p error says what is wrong with it, once.
+void Coordinator::portFails(TimePoint now, const std::string& error)
+{
+  current_.reset();
+  connection_.lost();
+  gateway_.connectionEnded(now);
+  if (connected_ && !(port_failing_ && port_error_ == error))
+  {
+    port_failing_ = !port_works_ || line_.telnetFound();
+    port_error_ = error;
     log(Level::Error, port_error_ + "; the node keeps trying");
     port_complained_ = true;
   }
   connected_ = false;
   last_error_ = wire::ERROR_PORT_LOST;
   broadcast_due_ = false;
-  for (const auto& inverter : inverters_)
-  {
-    if (!inverter->offline())
-    {
-      inverter->goOffline(wire::ERROR_PORT_LOST);
-      wentOffline(now, *inverter, wire::ERROR_PORT_LOST);
-    }
-    inverter->noteExchangeError(wire::ERROR_PORT_LOST);
-  }
+  loseEverybody(now, wire::ERROR_PORT_LOST);
 }
 
 // --- shutdown --------------------------------------------------------------------------------------------------------

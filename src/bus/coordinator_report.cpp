@@ -84,14 +84,24 @@ Report Coordinator::report(TimePoint now) const
   {
     report.findings.push_back(
         { Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" : port_error_) +
-                            "; plug it in or check its name, rights and settings" });
+                            (configuration_.bus.gateway ? "; check the address, and what else is connected to it"
+                                                        : "; plug it in or check its name, rights and settings") });
+  }
+  for (const auto& finding : { gatewayFinding(), quirkFinding() })
+  {
+    if (finding)
+    {
+      report.findings.push_back(*finding);
+    }
   }
   if (counters_.foreign_frames > 0 && now - foreign_at_ < seconds(FOREIGN_SHOWN_S))
   {
-    report.findings.push_back({ Level::Warn,
-                                "frames that this node did not ask for are on the line: look for a second "
-                                "master (" +
-                                    std::to_string(counters_.foreign_frames) + " so far)" });
+    report.findings.push_back(
+        { Level::Warn, std::string("frames that this node did not ask for are on the line: look for ") +
+                           (configuration_.bus.gateway ? "another client of the gateway, or a gateway that "
+                                                         "polls by itself"
+                                                       : "a second master") +
+                           " (" + std::to_string(counters_.foreign_frames) + " so far)" });
   }
   if (scheduler_->pauseWasCut())
   {
@@ -110,9 +120,13 @@ Report Coordinator::report(TimePoint now) const
   report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
   report.values.emplace_back("computed cycle", rounded(toSeconds(budget_.cycle) * 1e3, "%.1f ms"));
   report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
-  report.values.emplace_back("worst stop latency, computed",
-                             rounded(toSeconds(budget_.worst_stop + longestReplyDelay()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("worst stop latency, computed", rounded(toSeconds(worstStop()) * 1e3, "%.1f ms"));
   report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
+  if (gateway_.active())
+  {
+    report.values.emplace_back("gateway kept by a silent station",
+                               rounded(toSeconds(gateway_.block()) * 1e3, "%.0f ms"));
+  }
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));
   for (const auto& inverter : inverters_)

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 #include "inverter_bus/bus/coordinator.h"
 #include "inverter_bus/wire/shown.h"
@@ -15,7 +16,8 @@ namespace bus
 namespace
 {
 constexpr double GROUP_ERROR_SHOWN_S = 1.0;
-constexpr double GROUP_LOG_PERIOD_S = 5.0;
+// Inverters that the line about a refused group names; a group may have sixty that are all locked.
+constexpr std::size_t MOST_NAMED = 4;
 
 /// Contract, section 2: which id counts if several apply.
 int rank(std::uint16_t error_id)
@@ -24,6 +26,13 @@ int rank(std::uint16_t error_id)
                                                 ERROR_NOT_ARMED,     ERROR_OFFLINE,      ERROR_CANCELLED,
                                                 ERROR_LOCKED };
   return static_cast<int>(std::find(ORDER.begin(), ORDER.end(), error_id) - ORDER.begin());
+}
+
+std::string idText(std::uint16_t error_id)
+{
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "0x%04X", error_id);
+  return text.data();
 }
 }  // namespace
 
@@ -74,6 +83,10 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = "a parameter is being written in the drive's setup area";
     return judged.error_id;
   }
+  else if (inverter.stop.held())
+  {
+    judged.error_id = ERROR_CANCELLED;
+  }
   else
   {
     switch (inverter.interlock.judge(now, publisher))
@@ -95,14 +108,31 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
   return judged.error_id;
 }
 
+bool Coordinator::stops(std::size_t index, double velocity) const
+{
+  return inverters_[index]->movement.range().stops(velocity);
+}
+
+/// One factor for all, the smallest that any of them needs: a vehicle that is too fast goes on in its direction.
+double Coordinator::factorOf(const VelocityCommand& command) const
+{
+  double factor = 1.0;
+  for (const auto& target : command.targets)
+  {
+    factor = std::min(factor, inverters_[target.first]->movement.range().factorFor(target.second));
+  }
+  return factor;
+}
+
 std::uint16_t Coordinator::judgeGroup(TimePoint now, const VelocityCommand& command,
                                       std::vector<JudgedVelocity>& judged, bool& repeat)
 {
   std::uint16_t worst = 0;
+  const double factor = factorOf(command);
   for (const auto& target : command.targets)
   {
     const Inverter& inverter = *inverters_[target.first];
-    JudgedVelocity one = inverter.movement.judge(target.second);
+    JudgedVelocity one = inverter.movement.judge(target.second, factor);
     const bool zero = one.error_id == 0 && one.target.zero;
     repeat = repeat || (!zero && inverter.interlock.judge(now, command.publisher) == Permission::Repeat);
     const std::uint16_t error_id = judgeOne(now, target.first, command.publisher, one);
@@ -143,13 +173,44 @@ std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command
   {
     noteGroupError(now, error_id);
   }
+  tellRefusal(now, command, judged, error_id);
+  return error_id;
+}
+
+/// In the status of every inverter of the command, and in the log.
+void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
+                              std::uint16_t error_id)
+{
+  std::optional<std::size_t> culprit;
+  std::string reasons;
+  std::size_t named = 0;
+  std::size_t refused = 0;
   for (std::size_t position = 0; position < judged.size(); ++position)
   {
-    Inverter& inverter = *inverters_[command.targets[position].first];
-    const std::string& text = judged[position].text;
-    inverter.refuseCommand(error_id, text.empty() ? "the group was refused: " + errorText(error_id) : text);
+    const auto& target = command.targets[position];
+    const JudgedVelocity& one = judged[position];
+    refused += one.error_id != 0 ? 1 : 0;
+    if (one.error_id == error_id && named++ < MOST_NAMED)
+    {
+      culprit = culprit ? culprit : target.first;
+      reasons += (reasons.empty() ? "" : "; ") + inverters_[target.first]->config.name + ": " +
+                 refusedVelocity(target.second, one.error_id, one.text);
+    }
   }
-  return error_id;
+  for (std::size_t position = 0; position < judged.size(); ++position)
+  {
+    const auto& target = command.targets[position];
+    const JudgedVelocity& one = judged[position];
+    inverters_[target.first]->refuseCommand(error_id,
+                                            one.text.empty() ? "the group was refused: " + reasons : one.text);
+    refusals_.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
+                                                           : "the group was refused: " + reasons);
+  }
+  const std::size_t others = refused - std::min(named, MOST_NAMED);
+  refusals_.refused(now, culprit, error_id,
+                    (command.grouped ? "group refused: " : "refused: ") + reasons +
+                        (others == 0 ? "" : "; and " + std::to_string(others) + " more of the group") + " (" +
+                        idText(error_id) + ")");
 }
 
 void Coordinator::noteGroupError(TimePoint now, std::uint16_t error_id)
@@ -214,8 +275,17 @@ void Coordinator::applyVelocities(TimePoint now, const VelocityCommand& command,
 /// Never refused; returns true if a frame is needed.
 bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)
 {
-  inverter.interlock.zeroed(now, publisher);
+  if (target.near_zero)
+  {
+    inverter.interlock.nearlyZeroed(now, publisher);
+  }
+  else
+  {
+    inverter.interlock.zeroed(now, publisher);
+  }
   inverter.acceptCommand();
+  refusals_.accepted(inverter.index);
+  inverter.velocityConfirmed();
   if (inverter.stop.pending())
   {
     return false;
@@ -227,8 +297,12 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     inverter.interlock.resting();
     return false;
   }
+  if (zeroNeedsStop(now, inverter))
+  {
+    requestStop(now, inverter, StopMode::Decelerate, gateway_.motionUntil(now, inverter.index).has_value(), "");
+    return false;
+  }
   inverter.movement.aim(target);
-  inverter.velocity_tries = 0;
   return inverter.movement.active();
 }
 
@@ -236,10 +310,10 @@ bool Coordinator::applyMove(TimePoint now, Inverter& inverter, const Publisher& 
 {
   inverter.interlock.commanded(now, publisher, true);
   inverter.acceptCommand();
+  refusals_.accepted(inverter.index);
   // Only the stop of a command of 0 can be pending here; the newer command takes its place.
   inverter.stop.cancel();
   inverter.movement.aim(target);
-  inverter.velocity_tries = 0;
   return inverter.movement.active();
 }
 
@@ -249,28 +323,14 @@ void Coordinator::refuse(TimePoint now, const std::vector<std::size_t>& indices,
   for (const std::size_t index : indices)
   {
     inverters_[index]->refuseCommand(error_id, text);
+    refusals_.notCommanded(index, text);
   }
   if (group)
   {
     noteGroupError(now, error_id);
-    logGroupRefusal(now, text);
+    // The text holds what somebody has sent: a stream of groups, each wrong in another way, is one kind all the same.
+    refusals_.refused(now, std::nullopt, error_id, "grouped command refused: " + text);
   }
-}
-
-/// The text holds what somebody has sent: a stream of groups, each wrong in another way, would fill the log.
-void Coordinator::logGroupRefusal(TimePoint now, const std::string& text)
-{
-  if (group_logged_at_ && now - *group_logged_at_ < seconds(GROUP_LOG_PERIOD_S))
-  {
-    ++groups_not_logged_;
-    return;
-  }
-  const std::string more = groups_not_logged_ == 0
-                               ? ""
-                               : " (and " + std::to_string(groups_not_logged_) + " other groups since the last one)";
-  log(Level::Warn, "grouped command refused: " + text + more);
-  group_logged_at_ = now;
-  groups_not_logged_ = 0;
 }
 
 // --- stop ------------------------------------------------------------------------------------------------------------
@@ -291,6 +351,7 @@ void Coordinator::requestStop(TimePoint now, Inverter& inverter, StopMode mode, 
   }
   if (lock)
   {
+    inverter.stop.hold();
     inverter.interlock.stopRequested();
   }
 }
@@ -333,8 +394,8 @@ void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uin
   }
   if (!index && broadcastIsSafe())
   {
+    broadcast_requested_ = broadcast_due_ ? broadcast_requested_ : now;
     broadcast_due_ = true;
-    broadcast_requested_ = now;
   }
   if (call.callback)
   {
@@ -454,6 +515,15 @@ ServiceBounds Coordinator::bounds() const
   bounds.read_faults = std::max(bounds.read_faults, 80.0 * exchange);
   bounds.read_parameter = std::max(bounds.read_parameter, 2.0 * exchange * (inverters + 2.0));
   bounds.write_parameter = std::max(bounds.write_parameter, 20.0 * exchange);
+  if (gateway_.active())
+  {
+    // A lost request of somebody else may keep the gateway before the first frame, and one of its own behind it.
+    for (double* bound :
+         { &bounds.stop, &bounds.reset, &bounds.read_faults, &bounds.read_parameter, &bounds.write_parameter })
+    {
+      *bound += 2.0 * configuration_.bus.gateway_timeout;
+    }
+  }
   return bounds;
 }
 
@@ -593,7 +663,9 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
   {
     return;
   }
-  if (!inverter.interlock.isFaulted() && inverter.drive.reports("faulted"))
+  const drive::Monitor& told = inverter.refresh.fresh();
+  // Not told, or told in a word that nobody knows: what can't be ruled out is reset.
+  if (!inverter.interlock.isFaulted() && !told.tripped().value_or(true))
   {
     Answer nothing;
     nothing.success = true;
@@ -606,8 +678,8 @@ void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callbac
   {
     requestStop(now, inverter, StopMode::Decelerate, true, "");
   }
-  startJob(now, index, std::make_unique<ResetJob>(inverter.drive, inverter.config.node), bounds().reset,
-           std::move(callback));
+  startJob(now, index, std::make_unique<ResetJob>(inverter.drive, inverter.config.node, told.unknown_trip),
+           bounds().reset, std::move(callback));
 }
 
 void Coordinator::readFaults(TimePoint now, std::size_t index, AnswerCallback callback)

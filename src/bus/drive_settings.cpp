@@ -3,7 +3,8 @@
 #include "inverter_bus/bus/drive_settings.h"
 
 #include <algorithm>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -13,9 +14,7 @@ namespace
 {
 std::string withUnit(double value, const std::string& unit)
 {
-  std::ostringstream text;
-  text << value << (unit.empty() ? "" : " ") << unit;
-  return text.str();
+  return wire::shownNumber(value, 9) + (unit.empty() ? "" : " ") + unit;
 }
 }  // namespace
 

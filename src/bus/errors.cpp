@@ -13,6 +13,11 @@ namespace
 constexpr std::uint8_t LAST_LASTING_EXCEPTION = 0x03;
 }  // namespace
 
+bool isAnswered(const wire::Reply& reply)
+{
+  return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
+}
+
 bool isLastingRefusal(const wire::Reply& reply)
 {
   if (reply.outcome == wire::Outcome::Exception && reply.error_id < 0x8000)

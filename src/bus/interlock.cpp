@@ -85,13 +85,14 @@ bool Interlock::silent(TimePoint now, const Stream* stream) const
 {
   Duration needed = std::max(command_timeout_, seconds(SHORTEST_SILENCE_S));
   // Whoever is not known may be one of the forgotten, whose stream goes on.
-  TimePoint since = stream == nullptr ? std::max(*neutral_since_, forgotten_last_) : *neutral_since_;
-  if (stream != nullptr)
+  const bool commanded = stream != nullptr && stream->last;
+  TimePoint since = commanded ? *neutral_since_ : std::max(*neutral_since_, forgotten_last_);
+  if (commanded)
   {
     // The longest of the last few: a publisher that sends in pairs does not become a fast one by that.
     const Duration spacing = *std::max_element(stream->spacings.begin(), stream->spacings.end());
     needed = std::max(needed, std::min(2 * spacing, seconds(LONGEST_SPACING_SILENCE_S)));
-    since = std::max(since, stream->last);
+    since = std::max(since, *stream->last);
   }
   return now - since >= needed;
 }
@@ -133,7 +134,8 @@ Permission Interlock::judge(TimePoint now, const Publisher& publisher) const
   return admitted || silent(now, stream) ? Permission::Granted : Permission::Locked;
 }
 
-Interlock::Stream& Interlock::book(TimePoint now, const Publisher& publisher)
+/// Whoever has sent anything is known from then on: what it repeats on its next connection is old.
+Interlock::Stream& Interlock::hear(TimePoint now, const Publisher& publisher)
 {
   auto found = streams_.find(publisher.name);
   if (found == streams_.end())
@@ -141,21 +143,28 @@ Interlock::Stream& Interlock::book(TimePoint now, const Publisher& publisher)
     if (streams_.size() >= MOST_PUBLISHERS)
     {
       const auto oldest = std::min_element(streams_.begin(), streams_.end(), [](const auto& left, const auto& right) {
-        return left.second.last < right.second.last;
+        return left.second.heard < right.second.heard;
       });
-      forgotten_last_ = std::max(forgotten_last_, oldest->second.last);
+      forgotten_last_ = std::max(forgotten_last_, oldest->second.heard);
       streams_.erase(oldest);
     }
     found = streams_.emplace(publisher.name, Stream()).first;
   }
-  else
-  {
-    found->second.spacings[found->second.next_spacing] = now - found->second.last;
-    found->second.next_spacing = (found->second.next_spacing + 1) % found->second.spacings.size();
-  }
-  found->second.last = now;
+  found->second.heard = now;
   found->second.topics.insert(publisher.topic);
   return found->second;
+}
+
+Interlock::Stream& Interlock::book(TimePoint now, const Publisher& publisher)
+{
+  Stream& stream = hear(now, publisher);
+  if (stream.last)
+  {
+    stream.spacings[stream.next_spacing] = now - *stream.last;
+    stream.next_spacing = (stream.next_spacing + 1) % stream.spacings.size();
+  }
+  stream.last = now;
+  return stream;
 }
 
 void Interlock::commanded(TimePoint now, const Publisher& publisher, bool accepted)
@@ -177,6 +186,14 @@ void Interlock::zeroed(TimePoint now, const Publisher& publisher)
   stream.neutral = true;
   stream.nonzero = false;
   // What was moving is on its way to rest, and the stop of a 0 insists by itself: nothing is left for the dead man.
+  last_accepted_.reset();
+}
+
+void Interlock::nearlyZeroed(TimePoint now, const Publisher& publisher)
+{
+  // Neither a message nor a 0: a stream that goes through zero must not get past a lock by that, and one that rests near
+  // zero is silent all the while.
+  hear(now, publisher).nonzero = false;
   last_accepted_.reset();
 }
 
@@ -238,7 +255,7 @@ bool Interlock::isFaulted() const
 unsigned Interlock::activePublishers(TimePoint now) const
 {
   return static_cast<unsigned>(std::count_if(streams_.begin(), streams_.end(), [&](const auto& stream) {
-    return stream.second.nonzero && now - stream.second.last < seconds(ACTIVE_PUBLISHER_S);
+    return stream.second.nonzero && now - *stream.second.last < seconds(ACTIVE_PUBLISHER_S);
   }));
 }
 }  // namespace bus

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -36,14 +37,6 @@ std::string listed(const std::vector<int>& codes)
   return text;
 }
 
-std::string milliseconds(Duration duration)
-{
-  std::ostringstream text;
-  text.precision(3);
-  text << toSeconds(duration) * 1e3 << " ms";
-  return text.str();
-}
-
 std::string hex(std::uint16_t value)
 {
   char text[8];
@@ -66,7 +59,8 @@ bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, doubl
 }
 }  // namespace
 
-Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after)
+Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after,
+                   int retries)
   : index(index)
   , config(config)
   , drive(drive)
@@ -75,6 +69,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , stop(drive, config.node)
   , refresh(drive, config.node)
   , settings(drive, config.node)
+  , lost_writes(retries, offline_after)
   , offline_after_(offline_after)
 {
 }
@@ -87,6 +82,7 @@ bool Inverter::answered(const wire::Reply& reply)
   last_reply_ = reply.finished_at;
   ever_answered_ = true;
   failures_ = 0;
+  read_failed_ = false;
   exchange_error_ = 0;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
   probes = 0;
@@ -99,14 +95,17 @@ bool Inverter::answered(const wire::Reply& reply)
   return back;
 }
 
-bool Inverter::failed(TimePoint now, std::uint16_t error_id)
+bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
   if (now < silence_until_)
   {
     return false;
   }
   exchange_error_ = error_id;
-  if (++failures_ < offline_after_ || offline_)
+  read_failed_ = read_failed_ || !write;
+  // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
+  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
+  if (patience || !read_failed_ || offline_)
   {
     return false;
   }
@@ -128,6 +127,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
   interlock.offline();
+  stop.forgetConfirmation();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -136,6 +136,8 @@ void Inverter::goOffline(std::uint16_t error_id)
   operation_off_since_.reset();
   unexpected_motion_ = false;
   reset_active = false;
+  // From now on nothing of it is answered, and that is what users are told.
+  lost_writes.lower();
 }
 
 bool Inverter::offline() const
@@ -143,9 +145,19 @@ bool Inverter::offline() const
   return offline_;
 }
 
+bool Inverter::needsRead() const
+{
+  return !offline_ && failures_ >= offline_after_ && !read_failed_;
+}
+
 bool Inverter::known() const
 {
   return known_;
+}
+
+bool Inverter::everKnown() const
+{
+  return ever_known_;
 }
 
 bool Inverter::unreadSinceReturn() const
@@ -261,9 +273,15 @@ void Inverter::noteExchange(wire::Outcome outcome)
     return;
   }
   run_proven_ = false;
-  if (outcome != wire::Outcome::Exception && drive.wears("frequency"))
+  if (outcome == wire::Outcome::Exception)
   {
-    // A short power cut may be behind it, after which the drive writes set-points to its EEPROM again.
+    return;
+  }
+  // A short power cut may be behind it.
+  refresh.suspectRestart();
+  if (drive.wears("frequency"))
+  {
+    // After one the drive writes set-points to its EEPROM again.
     settings.connectAgain();
   }
 }
@@ -381,23 +399,22 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
-  const bool faulted = monitor.faulted.value_or(interlock.isFaulted());
+  const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
   const bool new_trip = faulted && !interlock.isFaulted();
   judgement.tripped = new_trip || early_trip_;
   early_trip_ = false;
   interlock.faulted(faulted);
   if (judgement.tripped)
   {
-    const std::uint16_t code = monitor.fault_code.value_or(0);
-    judgement.trip_text =
-        "trip " + std::to_string(code) + ": " + (code == 0 ? std::string("no reason given") : drive.faultText(code));
+    judgement.trip_text = drive.tripText(monitor);
     judgement.stop_reason = new_trip ? judgement.trip_text : std::string();
   }
   judgeRun(monitor, refresh.freshSentAt(), judgement);
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
-  judgeRestart(monitor, judgement);
+  judgeRestart(monitor, refresh.freshSentAt(), judgement);
   compareMovement(now, monitor);
   if (movement.runConfirmed() && now - command_source_at_ >= seconds(COMMAND_SOURCE_PERIOD_S))
   {
@@ -410,14 +427,27 @@ Judgement Inverter::judge(TimePoint now)
 }
 
 /// The drive says that it has forgotten what it was told since its last return.
-void Inverter::judgeRestart(const drive::Monitor& monitor, Judgement& judgement)
+void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
 {
-  if (!monitor.restarted.value_or(false) || !settings.connected())
+  if (!monitor.restarted || !settings.connected())
   {
     return;
   }
-  settings.restart();
+  if (!*monitor.restarted)
+  {
+    no_restart_until_ = sent_at;
+    return;
+  }
   refresh.restartNoted();
+  if (movement.runConfirmed() && no_restart_until_ < movement.runChangedAt() && !stop.pending())
+  {
+    // It may have restarted before it got the RUN that is in force. If that is gone, the next read shows it.
+    settings.connectAgain();
+    refresh.askForRun();
+    run_proven_ = false;
+    return;
+  }
+  settings.restart();
   // What was selected for its block read may count only now.
   block_note_.clear();
   refresh.useBlock(std::nullopt);
@@ -432,15 +462,15 @@ Judgement Inverter::judgeWords(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& words = refresh.words();
-  if (words.faulted.value_or(false) && !interlock.isFaulted())
+  if (words.tripped().value_or(false) && !interlock.isFaulted())
   {
     interlock.faulted(true);
     early_trip_ = true;
-    judgement.stop_reason = "the drive has tripped";
+    judgement.stop_reason = words.unknown_trip ? drive.tripText(words) : "the drive has tripped";
   }
   judgeRun(words, refresh.wordsSentAt(), judgement);
   judgeOperation(now, words, refresh.wordsSentAt(), judgement);
-  judgeRestart(words, judgement);
+  judgeRestart(words, refresh.wordsSentAt(), judgement);
   return judgement;
 }
 
@@ -565,14 +595,47 @@ InverterStatus Inverter::status(TimePoint now) const
   status.reset_active = reset_active;
   status.stop_active = stop.pending();
   status.locked = interlock.locked(now);
-  status.error_id = command_error_ != 0 ? command_error_ : exchange_error_;
-  if (status.error_id != 0)
-  {
-    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_);
-  }
+  showError(status);
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
   return status;
+}
+
+/// The one that says most: why it is locked more than that it is, a command's own more than a single exchange's.
+void Inverter::showError(InverterStatus& status) const
+{
+  if (lost_writes.raised())
+  {
+    status.error_id = wire::ERROR_TIMEOUT;
+    status.error_text = lost_writes.text();
+  }
+  else if (command_error_ != 0)
+  {
+    status.error_id = command_error_;
+    status.error_text = command_error_text_;
+  }
+  else if (velocity_error_ != 0)
+  {
+    status.error_id = velocity_error_;
+    status.error_text = velocity_error_text_;
+  }
+  else if (exchange_error_ != 0)
+  {
+    status.error_id = exchange_error_;
+    status.error_text = errorText(exchange_error_);
+  }
+}
+
+void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
+{
+  velocity_error_ = error_id;
+  velocity_error_text_ = text;
+}
+
+void Inverter::velocityConfirmed()
+{
+  velocity_error_ = 0;
+  velocity_error_text_.clear();
 }
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
@@ -601,11 +664,21 @@ std::vector<Finding> Inverter::errors() const
                                            "); check supply, wiring, station number and serial settings" });
     return findings;
   }
+  if (lost_writes.raised())
+  {
+    findings.push_back(
+        { Level::Error,
+          lost_writes.text() + " (" + std::to_string(lost_writes.inARow()) +
+              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
+              "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
+  }
   if (interlock.isFaulted())
   {
-    const std::uint16_t code = refresh.fresh().fault_code.value_or(0);
-    findings.push_back({ Level::Error, "tripped: " + std::to_string(code) + " " + drive.faultText(code) +
-                                           "; remove the cause, then call reset" });
+    const drive::Monitor& told = refresh.fresh();
+    const std::uint16_t code = told.fault_code.value_or(0);
+    const std::string why =
+        told.unknown_trip ? drive.tripText(told) : std::to_string(code) + " " + drive.faultText(code);
+    findings.push_back({ Level::Error, "tripped: " + why + "; remove the cause, then call reset" });
   }
   return findings;
 }
@@ -644,9 +717,13 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + milliseconds(latest_late_reply_) +
+    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
          " after its request; a response_timeout above that "
          "would have caught it");
+  }
+  for (const std::string& mistake : drive.profile().mistakes)
+  {
+    warn("left out: " + mistake);
   }
   if (!drive.profile().unconfirmed.empty())
   {
@@ -703,11 +780,11 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("drive", drive.profile().name);
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? milliseconds(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", milliseconds(slowest_reply_));
+                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", milliseconds(settings.replyDelay()));
+  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));
@@ -735,10 +812,11 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
-                 !monitor.faulted.value_or(false);
+                 !monitor.tripped().value_or(false);
   view.stop_pending = stop.pending();
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();
+  view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = refresh_not_before;
   view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now && setting_not_before <= now;
   view.serve_by = serveBy(deadline_margin);

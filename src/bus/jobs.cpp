@@ -64,8 +64,10 @@ Job::Progress Job::lost(const wire::Reply& reply)
 
 // --- reset -----------------------------------------------------------------------------------------------------------
 
-ResetJob::ResetJob(const drive::Drive& drive, std::uint8_t station)
-  : Job(drive, station, CommandKind::Reset), phase_(drive.runBlock() ? Phase::CheckRun : Phase::Steps)
+ResetJob::ResetJob(const drive::Drive& drive, std::uint8_t station, std::optional<std::uint32_t> unknown_trip)
+  : Job(drive, station, CommandKind::Reset)
+  , unknown_trip_(unknown_trip)
+  , phase_(drive.runBlock() ? Phase::CheckRun : Phase::Steps)
 {
 }
 
@@ -126,56 +128,98 @@ Job::Progress ResetJob::afterRestartCheck(const wire::Reply& reply)
   return Progress::GoesOn;
 }
 
+/// Rule 4.8: nothing is sent unless RUN is read as off.
+Job::Progress ResetJob::afterRunCheck(const wire::Reply& reply)
+{
+  drive::Monitor monitor;
+  drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
+  // A word that means nothing is no proof that RUN is off.
+  if (!monitor.run_seen.value_or(true))
+  {
+    phase_ = Phase::Steps;
+    return Progress::GoesOn;
+  }
+  if (run_was_on_)
+  {
+    return fail(ERROR_CANCELLED, "RUN is still on after a stop: nothing was reset, since the motor would start");
+  }
+  run_was_on_ = true;
+  return Progress::NeedsStop;
+}
+
+Job::Progress ResetJob::notTold()
+{
+  return succeed("reset sent; this drive can't tell whether the trip is gone: its state is unknown");
+}
+
+Job::Progress ResetJob::verify(const wire::Reply& reply)
+{
+  drive::Monitor monitor;
+  drive_.decode(verifyBlock(), reply.pdu, monitor);
+  const std::optional<bool> tripped = monitor.tripped();
+  if (!tripped)
+  {
+    return notTold();
+  }
+  if (!*tripped)
+  {
+    return succeed(unknown_trip_ ? "reset sent: the unknown state " + std::to_string(*unknown_trip_) + " is gone"
+                                 : "trip cleared");
+  }
+  // Some causes (overheat, a safe stop that is still open) keep the trip: the bound ends the waiting.
+  answer().error_id = wire::ERROR_TIMEOUT;
+  answer().message = monitor.unknown_trip
+                         ? "reset sent; whether the trip is gone is unknown: " + drive_.tripText(monitor)
+                         : "the drive is still tripped after the reset: remove the cause first";
+  pause_ = seconds(VERIFY_PERIOD_S);
+  if (++still_tripped_ == VERIFICATIONS_BEFORE_REPEAT && drive_.runBlock() &&
+      drive_.sequence("reset")->steps.front().expects_reply)
+  {
+    // Not where each reset makes the drive start anew.
+    // A reset coil that an earlier master left on gave no edge the first time.
+    phase_ = Phase::CheckRun;
+    step_ = 0;
+  }
+  return Progress::GoesOn;
+}
+
+Job::Progress ResetJob::refused(const wire::Reply& reply)
+{
+  if (phase_ == Phase::CheckRun)
+  {
+    return refusedByDrive(reply, "nothing was reset, since the drive does not tell whether RUN is off");
+  }
+  if (phase_ != Phase::Verify)
+  {
+    return refusedByDrive(reply, "the drive refused the reset");
+  }
+  if (isLastingRefusal(reply))
+  {
+    return notTold();
+  }
+  // Busy, after all: the reset itself was taken.
+  answer().error_id = reply.error_id;
+  answer().message = "reset sent; whether the trip is gone is unknown: " + drive_.exceptionText(reply.error_id);
+  pause_ = seconds(VERIFY_PERIOD_S);
+  return Progress::GoesOn;
+}
+
 Job::Progress ResetJob::done(const wire::Reply& reply)
 {
   if (reply.outcome == wire::Outcome::Exception)
   {
-    return refusedByDrive(reply, "the drive refused the reset");
+    return refused(reply);
   }
-  drive::Monitor monitor;
   switch (phase_)
   {
     case Phase::CheckRun:
-      drive_.decode(*drive_.runBlock(), reply.pdu, monitor);
-      // A word that means nothing is no proof that RUN is off.
-      if (monitor.run_seen.value_or(true))
-      {
-        if (run_was_on_)
-        {
-          return fail(ERROR_CANCELLED, "RUN is still on after a stop: nothing was reset, since the motor would start");
-        }
-        run_was_on_ = true;
-        return Progress::NeedsStop;
-      }
-      phase_ = Phase::Steps;
-      return Progress::GoesOn;
+      return afterRunCheck(reply);
     case Phase::Steps:
       return afterStep();
     case Phase::CheckRestart:
       return afterRestartCheck(reply);
     default:
-      drive_.decode(verifyBlock(), reply.pdu, monitor);
-      if (!monitor.faulted)
-      {
-        return succeed("reset sent; this drive can't tell whether the trip is gone");
-      }
-      if (*monitor.faulted)
-      {
-        // Some causes (overheat, a safe stop that is still open) keep the trip: the bound ends the waiting.
-        answer().error_id = wire::ERROR_TIMEOUT;
-        answer().message = "the drive is still tripped after the reset: remove the cause first";
-        pause_ = seconds(VERIFY_PERIOD_S);
-        if (++still_tripped_ == VERIFICATIONS_BEFORE_REPEAT && drive_.runBlock() &&
-            drive_.sequence("reset")->steps.front().expects_reply)
-        {
-          // Not where each reset makes the drive start anew.
-          // A reset coil that an earlier master left on gave no edge the first time.
-          phase_ = Phase::CheckRun;
-          step_ = 0;
-        }
-        return Progress::GoesOn;
-      }
-      return succeed("trip cleared");
+      return verify(reply);
   }
 }
 

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -27,15 +28,10 @@ JudgedVelocity refused(std::uint16_t error_id, const std::string& text)
   return judged;
 }
 
-std::string number(double value)
-{
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 }  // namespace
 
-Movement::Movement(const drive::Drive& drive, const InverterConfig& config) : drive_(drive), config_(config)
+Movement::Movement(const drive::Drive& drive, const InverterConfig& config)
+  : drive_(drive), config_(config), range_(drive, config)
 {
   if (const drive::Sequence* stop = drive.sequence(STOP))
   {
@@ -49,34 +45,30 @@ Movement::Movement(const drive::Drive& drive, const InverterConfig& config) : dr
   }
 }
 
-JudgedVelocity Movement::judge(double velocity) const
+const VelocityRange& Movement::range() const
 {
-  if (!std::isfinite(velocity))
+  return range_;
+}
+
+JudgedVelocity Movement::judge(double velocity, double factor) const
+{
+  using Kind = RangedVelocity::Kind;
+  const RangedVelocity ranged = range_.judge(velocity, factor);
+  if (ranged.kind == Kind::Refused)
   {
-    return refused(ERROR_OUT_OF_RANGE, "velocity " + number(velocity) + " is not a finite number");
+    return refused(ERROR_OUT_OF_RANGE, ranged.why);
   }
   JudgedVelocity judged;
-  judged.target.velocity = velocity;
-  if (velocity == 0.0)
+  judged.target.velocity = ranged.velocity;
+  judged.target.near_zero = ranged.kind == Kind::NearZero;
+  judged.target.zero = judged.target.near_zero || ranged.kind == Kind::Zero;
+  if (judged.target.zero)
   {
-    judged.target.zero = true;
     return judged;
   }
-  const double magnitude = std::fabs(velocity);
-  if (magnitude > config_.max_velocity || magnitude < config_.min_velocity)
-  {
-    return refused(ERROR_OUT_OF_RANGE, "velocity " + number(velocity) + " is out of range: 0, or " +
-                                           number(config_.min_velocity) + " to " + number(config_.max_velocity) +
-                                           " in either direction");
-  }
-  const double frequency = velocity * config_.hz_per_unit;
+  const double frequency = ranged.velocity * config_.hz_per_unit;
   judged.target.counts = drive_.frequencyCounts(std::fabs(frequency));
   judged.target.reverse = frequency < 0.0;
-  if (judged.target.counts == 0)
-  {
-    return refused(ERROR_OUT_OF_RANGE, "velocity " + number(velocity) + " rounds to 0 Hz; the drive's step is " +
-                                           number(drive_.frequencyResolution()) + " Hz");
-  }
   const std::string& name = judged.target.reverse ? REVERSE : FORWARD;
   if (drive_.sequence(name) == nullptr)
   {

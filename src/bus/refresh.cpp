@@ -49,6 +49,7 @@ void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
   take(from.overload_warning, to.overload_warning);
   take(from.pid_deviation, to.pid_deviation);
   take(from.faulted, to.faulted);
+  take(from.unknown_trip, to.unknown_trip);
   take(from.restarted, to.restarted);
   take(from.raw_status, to.raw_status);
   take(from.fault_code, to.fault_code);
@@ -199,13 +200,19 @@ void Refresh::plan(TimePoint now)
   }
 }
 
-/// At most one slow read that is due; in the first refresh after a return those that tell of a leftover RUN.
+/// What a leftover RUN or a restart can be told from, after a return or a lost exchange.
+bool Refresh::goesFirst(const Block& block) const
+{
+  const bool run = !run_heard_ && carries(block.read, "run_seen");
+  const bool restart = restart_suspected_ && carries(block.read, "restarted");
+  return block.kind == Class::Slow && (run || restart);
+}
+
+/// At most one slow read that is due, or those that go first.
 void Refresh::planSlow(TimePoint now)
 {
-  const auto tells_run = [&](const Block& block) {
-    return !run_heard_ && block.kind == Class::Slow && carries(block.read, "run_seen") && now >= block.left_out_until;
-  };
-  const bool run_first = std::any_of(blocks_.begin(), blocks_.end(), tells_run);
+  const auto now_first = [&](const Block& block) { return goesFirst(block) && now >= block.left_out_until; };
+  const bool some_first = std::any_of(blocks_.begin(), blocks_.end(), now_first);
   const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
   bool planned = false;
   for (std::size_t step = 0; step < blocks_.size(); ++step)
@@ -217,7 +224,7 @@ void Refresh::planSlow(TimePoint now)
       continue;
     }
     const bool due = !block.ever || now - block.last >= due_age;
-    if (run_first ? tells_run(block) : has_stamp_ && !planned && due)
+    if (some_first ? now_first(block) : has_stamp_ && !planned && due)
     {
       plan_.push_back(index);
       planned = true;
@@ -251,7 +258,7 @@ void Refresh::planFaultReads()
 bool Refresh::advance()
 {
   ++position_;
-  if (position_ == plan_.size() && scratch_.faulted.value_or(false) && !fault_planned_)
+  if (position_ == plan_.size() && scratch_.tripped().value_or(false) && !fault_planned_)
   {
     // The reason of a trip belongs into the first status that shows it.
     planFaultReads();
@@ -266,7 +273,7 @@ bool Refresh::advance()
     failed();
     return false;
   }
-  if (!scratch_.faulted.value_or(true) && drive_.reports("fault_code"))
+  if (!scratch_.tripped().value_or(true) && drive_.reports("fault_code"))
   {
     scratch_.fault_code = 0;
   }
@@ -316,6 +323,7 @@ void Refresh::takeRunWords(const Block& block, const wire::Reply& reply)
   }
   take(block.values.run_seen, scratch_.run_seen);
   take(block.values.restarted, scratch_.restarted);
+  restart_suspected_ = restart_suspected_ && !block.values.restarted;
   const bool fast = block.kind == Class::Fast && (block.values.operation || block.values.running);
   if (block.values.run_seen || fast)
   {
@@ -437,6 +445,16 @@ void Refresh::restartNoted()
   scratch_.restarted.reset();
 }
 
+void Refresh::suspectRestart()
+{
+  restart_suspected_ = true;
+}
+
+void Refresh::askForRun()
+{
+  run_heard_ = false;
+}
+
 TimePoint Refresh::wordsSentAt() const
 {
   return scratch_sent_at_;
@@ -458,6 +476,7 @@ void Refresh::forget()
   fresh_ = drive::Monitor();
   complete_ = false;
   run_heard_ = false;
+  restart_suspected_ = false;
   block_.reset();
   chosen_values_.clear();
   // Reads that were split or left out are tried in full again.

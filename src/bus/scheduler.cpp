@@ -13,22 +13,28 @@ namespace
 {
 // Contract, rule 3.3: three attempts at once, then every second exchange at most.
 constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
-// A flood of stops: so many exchanges, then a read-back waits for one of another kind.
+// A flood of stops: after so many exchanges, a read-back or a needless stop alternates with exchanges of another kind.
 constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 // Other exchanges between two frames of a stop that insists.
 constexpr std::uint64_t INSISTING_SPACING = 1;
+// A stop that was tried so often in vain leaves half of the time to the others: a drive that loses every write for hours,
+// or a wire, must not make the driver blind for its neighbours.
+constexpr unsigned STOP_ATTEMPTS_BEFORE_PATIENCE = 10;
 // Rule 3.14: the lowest class gets at least every eighth exchange.
 constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
 // A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.
 constexpr unsigned LONE_COMMANDS_IN_A_ROW = 3;
 constexpr double LONGEST_SLEEP_S = 0.25;
+// Contract, 8.8: each offline inverter at most so often.
+constexpr double PROBE_PERIOD_S = 0.5;
 }  // namespace
 
 Scheduler::Scheduler(const Settings& settings)
   : settings_(settings)
   , stop_pending_(settings.inverters, false)
   , last_stop_exchange_(settings.inverters, 0)
-  , silent_at_deadline_(settings.inverters, false)
+  , silent_at_deadline_(settings.inverters, 0)
+  , last_probe_(settings.inverters)
 {
 }
 
@@ -41,7 +47,10 @@ std::deque<Scheduler::Ticket>::iterator Scheduler::find(CommandId id)
 
 void Scheduler::push(const WaitingCommand& command)
 {
-  Ticket ticket{ command, epoch_, ++sequence_ };
+  Ticket ticket;
+  ticket.command = command;
+  ticket.epoch = epoch_;
+  ticket.sequence = ++sequence_;
   if (command.kind == CommandKind::Velocity)
   {
     for (const std::size_t inverter : command.inverters)
@@ -49,12 +58,15 @@ void Scheduler::push(const WaitingCommand& command)
       for (const Ticket& other : tickets_)
       {
         const auto& members = other.command.inverters;
-        if (other.command.kind == CommandKind::Velocity && other.command.id != unit_ &&
-            std::find(members.begin(), members.end(), inverter) != members.end())
+        if (other.command.kind != CommandKind::Velocity ||
+            std::find(members.begin(), members.end(), inverter) == members.end())
         {
-          ticket.epoch = std::min(ticket.epoch, other.epoch);
-          ticket.sequence = std::min(ticket.sequence, other.sequence);
+          continue;
         }
+        ticket.epoch = other.begun ? ticket.epoch : std::min(ticket.epoch, other.epoch);
+        ticket.sequence = other.begun ? ticket.sequence : std::min(ticket.sequence, other.sequence);
+        // Groups that follow each other faster than a frame takes must not give the turn to the same member each time.
+        ticket.served = other.served ? other.served : ticket.served;
       }
       eraseVelocity(inverter);
     }
@@ -69,7 +81,6 @@ void Scheduler::erase(CommandId id)
   {
     tickets_.erase(found);
   }
-  endUnit(id);
 }
 
 void Scheduler::eraseVelocity(std::size_t inverter)
@@ -81,15 +92,7 @@ void Scheduler::eraseVelocity(std::size_t inverter)
     {
       members.erase(std::remove(members.begin(), members.end(), inverter), members.end());
     }
-    if (members.empty())
-    {
-      endUnit(ticket->command.id);
-      ticket = tickets_.erase(ticket);
-    }
-    else
-    {
-      ++ticket;
-    }
+    ticket = members.empty() ? tickets_.erase(ticket) : ticket + 1;
   }
 }
 
@@ -115,6 +118,23 @@ void Scheduler::postpone(CommandId id, TimePoint not_before)
   }
 }
 
+void Scheduler::splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before)
+{
+  const auto found = find(group);
+  if (found == tickets_.end() || found->command.inverters.size() == 1)
+  {
+    postpone(group, not_before);
+    return;
+  }
+  auto& members = found->command.inverters;
+  members.erase(std::remove(members.begin(), members.end(), inverter), members.end());
+  Ticket alone = *found;
+  alone.command.id = own;
+  alone.command.inverters = { inverter };
+  alone.command.not_before = not_before;
+  tickets_.push_back(alone);
+}
+
 bool Scheduler::velocityWaits(std::size_t inverter) const
 {
   return std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
@@ -131,11 +151,11 @@ std::vector<std::size_t> Scheduler::members(CommandId id) const
   return found == tickets_.end() ? std::vector<std::size_t>() : found->command.inverters;
 }
 
-void Scheduler::endUnit(CommandId id)
+void Scheduler::readSoon(std::size_t inverter)
 {
-  if (unit_ == id)
+  if (!isPutOff(inverter))
   {
-    unit_ = 0;
+    put_off_.push_back(inverter);
   }
 }
 
@@ -152,16 +172,53 @@ bool Scheduler::ready(const Ticket& ticket, TimePoint now) const
   return ticket.command.not_before <= now && !behind_stop;
 }
 
+/// The member of a velocity whose frame is next: they take turns, and nobody comes twice while another one can.
+std::size_t Scheduler::nextMember(const Ticket& ticket) const
+{
+  const auto& members = ticket.command.inverters;
+  const auto after = [&members](std::size_t inverter) {
+    const auto next = std::upper_bound(members.begin(), members.end(), inverter);
+    return next == members.end() ? members.front() : *next;
+  };
+  const std::size_t next = ticket.served ? after(*ticket.served) : members.front();
+  const bool again = next == avoided_ || (ticket.begun && next == last_inverter_);
+  return again ? after(next) : next;
+}
+
+/// Rule 3.4: a velocity that came together with one that is under way is part of what is under way.
+bool Scheduler::startsTogether(const Ticket& ticket, TimePoint now) const
+{
+  return ticket.command.kind == CommandKind::Velocity &&
+         std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& other) {
+           return other.begun && other.epoch == ticket.epoch && ready(other, now);
+         });
+}
+
+/// Units under way first, but not the inverter that had the last exchange while another one waits.
+int Scheduler::rank(const Ticket& ticket, TimePoint now, bool one_goes_on) const
+{
+  const bool again = nextMember(ticket) == last_inverter_;
+  if (ticket.begun || startsTogether(ticket, now))
+  {
+    return again ? 2 : 0;
+  }
+  return one_goes_on && again ? 3 : 1;
+}
+
 const Scheduler::Ticket* Scheduler::firstReady(TimePoint now, bool urgent_only) const
 {
-  const auto key = [](const Ticket& ticket) {
-    return std::make_tuple(!ticket.command.urgent, ticket.epoch, ticket.command.kind, ticket.command.inverters.front(),
-                           ticket.sequence);
+  const bool one_goes_on = std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
+    return ticket.begun && ready(ticket, now) && nextMember(ticket) == last_inverter_;
+  });
+  const auto key = [&](const Ticket& ticket) {
+    return std::make_tuple(!ticket.command.urgent, rank(ticket, now, one_goes_on), ticket.epoch, ticket.command.kind,
+                           ticket.frames, ticket.command.inverters.front(), ticket.sequence);
   };
   const Ticket* first = nullptr;
   for (const Ticket& ticket : tickets_)
   {
-    const bool eligible = ready(ticket, now) && (ticket.command.urgent || !urgent_only);
+    const bool eligible =
+        ready(ticket, now) && (ticket.command.urgent || !urgent_only) && nextMember(ticket) != avoided_;
     if (eligible && (first == nullptr || key(ticket) < key(*first)))
     {
       first = &ticket;
@@ -172,42 +229,61 @@ const Scheduler::Ticket* Scheduler::firstReady(TimePoint now, bool urgent_only) 
 
 // --- decisions -------------------------------------------------------------------------------------------------------
 
-Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views)
+Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, const Gate& gate)
 {
+  bare_probes_ = gate.bare_probes;
   for (std::size_t index = 0; index < views.size(); ++index)
   {
     stop_pending_[index] = views[index].stop_pending;
   }
-  if (half_refreshed_ && views[*half_refreshed_].offline)
-  {
-    half_refreshed_.reset();
-  }
-  Pick pick = choose(now, views);
+  forgetOffline(views);
+  Pick pick = gate.stops_only ? chooseBehindGateway(now, views, gate) : choose(now, views);
   if (pick.what == Pick::What::Nothing)
   {
     return pick;
   }
   ++epoch_;
+  if (pick.what == Pick::What::Command)
+  {
+    find(pick.command)->served = pick.inverter;
+  }
   // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
-  const bool goes_on = pick.what == Pick::What::Refresh && half_refreshed_ == pick.inverter;
+  const bool goes_on = pick.what == Pick::What::Refresh && std::find(half_refreshed_.begin(), half_refreshed_.end(),
+                                                                     pick.inverter) != half_refreshed_.end();
   deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
-  stops_in_a_row_ = pick.what == Pick::What::Stop ? stops_in_a_row_ + 1 : 0;
-  if (pick.what == Pick::What::Stop)
+  const bool stop = pick.what == Pick::What::Stop;
+  stops_in_a_row_ = stop ? stops_in_a_row_ + 1 : let_through_ ? stops_in_a_row_ : 0;
+  if (stop)
   {
     bookStop(pick, views);
   }
   return pick;
 }
 
+void Scheduler::forgetOffline(const std::vector<InverterView>& views)
+{
+  for (auto* waiting : { &half_refreshed_, &put_off_ })
+  {
+    waiting->erase(
+        std::remove_if(waiting->begin(), waiting->end(), [&](std::size_t index) { return views[index].offline; }),
+        waiting->end());
+  }
+}
+
 Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 {
-  if (auto stop = pickStop(views, false))
+  if (auto stop = pickStop(now, views, false))
   {
-    // Who stops again and again must not blind the driver: not a stop's write, but its read-back lets another one through.
-    const bool gives_way = views[stop->inverter].stop_written && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
+    // Who stops again and again must not blind the driver: not the write of a stop that takes RUN off, but its read-back
+    // and one that only repeats it let another exchange through.
+    const InverterView& view = views[stop->inverter];
+    const bool may_wait = view.stop_written || view.stop_repeats;
+    const bool gives_way = may_wait && !let_through_ && stops_in_a_row_ >= MOST_STOPS_IN_A_ROW;
     const auto other = gives_way ? chooseBehindStops(now, views) : std::nullopt;
+    let_through_ = other.has_value();
     return other ? *other : *stop;
   }
+  let_through_ = false;
   if (auto urgent = pickCommand(now, true))
   {
     return *urgent;
@@ -217,7 +293,7 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
     return *other;
   }
   // A live drive's stop that insists lets something else through; if there is nothing else, it goes on.
-  if (auto stop = pickStop(views, true))
+  if (auto stop = pickStop(now, views, true))
   {
     return *stop;
   }
@@ -225,35 +301,118 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
   return late ? *late : nothing(now, views);
 }
 
+/// The gateway still works on a request that was lost: whatever follows it would wait in there.
+Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate)
+{
+  if (const auto stop = pickStop(now, views, true))
+  {
+    return *stop;
+  }
+  if (const auto deadline = pickDeadline(now, views))
+  {
+    return *deadline;
+  }
+  Pick pick = nothing(now, views);
+  pick.wake = gate.until > now ? std::min(pick.wake, gate.until) : pick.wake;
+  return pick;
+}
+
 /// Everything but stops and what wants to stop.
 std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vector<InverterView>& views)
 {
-  const auto unit = find(unit_);
-  if (unit != tickets_.end() && unit->command.not_before <= now)
+  if (last_lost_)
   {
-    Pick pick;
-    pick.what = Pick::What::Command;
-    pick.command = unit_;
-    return pick;
+    // Who did not answer has no right to the next exchange, whatever it is for.
+    const auto other = chooseForAnother(now, views);
+    return other ? other : chooseInTurn(now, views);
   }
-  if (half_refreshed_ && views[*half_refreshed_].refresh_not_before <= now)
+  const auto going_on = chooseGoingOn(now, views);
+  return going_on ? going_on : chooseInTurn(now, views);
+}
+
+std::optional<Pick> Scheduler::chooseForAnother(TimePoint now, const std::vector<InverterView>& views)
+{
+  avoided_ = last_inverter_;
+  const auto other = chooseInTurn(now, views);
+  avoided_.reset();
+  return other;
+}
+
+std::optional<Pick> Scheduler::chooseGoingOn(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto unit = goOnWithUnit(now, views);
+  return unit ? unit : goOnWithRefresh(now, views);
+}
+
+/// Frames that belong together go back to back, but for another inverter's deadline, and in turns.
+std::optional<Pick> Scheduler::goOnWithUnit(TimePoint now, const std::vector<InverterView>& views)
+{
+  const bool any = std::any_of(tickets_.begin(), tickets_.end(),
+                               [&](const Ticket& ticket) { return ticket.begun && ready(ticket, now); });
+  if (!any || commands_in_a_row_ > 0)
   {
-    // The words of one status belong together.
-    Pick pick;
-    pick.what = Pick::What::Refresh;
-    pick.inverter = *half_refreshed_;
-    return pick;
+    return std::nullopt;
   }
-  // Time-outs that can't be met must not take the bus from everything else.
+  avoided_ = last_inverter_;
+  const auto deadline = deadlines_in_a_row_ == 0 ? pickDeadline(now, views) : std::nullopt;
+  avoided_.reset();
+  if (deadline)
+  {
+    return deadline;
+  }
+  const auto command = pickCommand(now, false);
+  const bool another_one = command && command->command != last_command_;
+  return another_one && backgroundIsDue(views) ? std::nullopt : command;
+}
+
+/// The words of one status belong together.
+std::optional<Pick> Scheduler::goOnWithRefresh(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto half = std::find_if(half_refreshed_.begin(), half_refreshed_.end(),
+                                 [&](std::size_t index) { return views[index].refresh_not_before <= now; });
+  if (half == half_refreshed_.end())
+  {
+    return std::nullopt;
+  }
+  if (*half == last_inverter_)
+  {
+    avoided_ = last_inverter_;
+    auto other = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
+    other = other ? other : pickCommand(now, false);
+    avoided_.reset();
+    if (other)
+    {
+      return other;
+    }
+  }
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *half;
+  return pick;
+}
+
+/// Time-outs that can't be met must not take the bus from everything else.
+bool Scheduler::deadlinesMayGo(const std::vector<InverterView>& views) const
+{
   const auto supervised = static_cast<unsigned>(std::count_if(
       views.begin(), views.end(), [](const InverterView& view) { return view.serve_by && !view.offline; }));
-  const auto deadline = deadlines_in_a_row_ < supervised ? pickDeadline(now, views) : std::nullopt;
+  return deadlines_in_a_row_ < supervised;
+}
+
+bool Scheduler::backgroundIsDue(const std::vector<InverterView>& views) const
+{
+  return exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND && pickBackground(views);
+}
+
+std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto deadline = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
   if (deadline)
   {
     return deadline;
   }
   const auto background = pickBackground(views);
-  if (background && exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND)
+  if (backgroundIsDue(views))
   {
     return background;
   }
@@ -264,8 +423,12 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
   }
   if (auto command = pickCommand(now, false))
   {
+    // A stop that insists between any two of them makes each one wait for long: then a lone command has company, too.
+    const bool insisted = std::any_of(views.begin(), views.end(), [](const InverterView& view) {
+      return view.stop_pending && !view.offline && view.stop_attempts >= STOP_ATTEMPTS_AT_ONCE;
+    });
     const bool give_way =
-        commands_in_a_row_ > 0 && (readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
+        commands_in_a_row_ > 0 && (insisted || readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
     if (give_way && probe)
     {
       return probe;
@@ -281,7 +444,7 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
   return refresh ? refresh : background;
 }
 
-std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views, bool nothing_else) const
+std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const
 {
   using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
   std::optional<Key> best;
@@ -291,8 +454,9 @@ std::optional<Pick> Scheduler::pickStop(const std::vector<InverterView>& views, 
     // An offline inverter's stop is tried once at once; then it is that inverter's probe.
     const bool at_once = view.offline ? view.stop_attempts == 0 : view.stop_attempts < STOP_ATTEMPTS_AT_ONCE;
     const bool spaced = exchanges_ - last_insisting_exchange_ >= INSISTING_SPACING || last_insisting_exchange_ == 0;
-    const bool insisting = !view.offline && (spaced || nothing_else);
-    if (!view.stop_pending || !(at_once || insisting))
+    const bool patient = view.stop_attempts >= STOP_ATTEMPTS_BEFORE_PATIENCE && now < patient_until_;
+    const bool insisting = !view.offline && ((spaced && !patient) || nothing_else);
+    if (!view.stop_pending || view.stop_not_before > now || !(at_once || insisting))
     {
       continue;
     }
@@ -332,12 +496,14 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
   Pick pick;
   pick.what = Pick::What::Command;
   pick.command = ticket->command.id;
+  pick.inverter = nextMember(*ticket);
   return pick;
 }
 
 std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<InverterView>& views)
 {
-  // One that did not answer when its time came lets the others go before it is tried again.
+  // One that did not answer when its time came lets the others go before it is tried again; several such take turns, since
+  // the time of one that never answers never moves.
   const auto key = [&](std::size_t index) {
     return std::make_tuple(silent_at_deadline_[index], *views[index].serve_by);
   };
@@ -345,7 +511,8 @@ std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<Inv
   for (std::size_t index = 0; index < views.size(); ++index)
   {
     const InverterView& view = views[index];
-    if (view.offline || !view.serve_by || *view.serve_by > now || view.refresh_not_before > now)
+    const bool due = view.serve_by && *view.serve_by <= now && view.refresh_not_before <= now;
+    if (index == avoided_ || view.offline || !due || view.refresh_unanswered)
     {
       continue;
     }
@@ -375,7 +542,7 @@ std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<Invert
   for (std::size_t step = 0; step < views.size(); ++step)
   {
     const std::size_t index = (probe_cursor_ + step) % views.size();
-    if (views[index].offline && views[index].refresh_not_before <= now)
+    if (index != avoided_ && mayProbe(now, views[index], index))
     {
       Pick pick;
       pick.what = views[index].stop_pending ? Pick::What::Stop : Pick::What::Probe;
@@ -387,21 +554,39 @@ std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<Invert
   return std::nullopt;
 }
 
+bool Scheduler::mayProbe(TimePoint now, const InverterView& view, std::size_t index) const
+{
+  const bool rested = last_probe_[index] == TimePoint() || now - last_probe_[index] >= seconds(PROBE_PERIOD_S);
+  const bool allowed = view.stop_pending ? view.stop_not_before <= now : bare_probes_;
+  return view.offline && view.refresh_not_before <= now && rested && allowed;
+}
+
 bool Scheduler::takesPart(const InverterView& view) const
 {
   return !view.offline && (!view.at_rest || rounds_ % settings_.idle_divisor == 0);
 }
 
-bool Scheduler::findNextOfCycle(TimePoint now, const std::vector<InverterView>& views)
+bool Scheduler::isPutOff(std::size_t inverter) const
+{
+  return std::find(put_off_.begin(), put_off_.end(), inverter) != put_off_.end();
+}
+
+/// Whose turn it is in the open cycle; nobody: it is over.
+std::optional<std::size_t> Scheduler::nextOfCycle(TimePoint now, const std::vector<InverterView>& views)
 {
   for (; cursor_ < views.size(); ++cursor_)
   {
-    if (takesPart(views[cursor_]) && views[cursor_].refresh_not_before <= now)
+    if (!takesPart(views[cursor_]) || views[cursor_].refresh_not_before > now || isPutOff(cursor_))
     {
-      return true;
+      continue;
     }
+    if (cursor_ != avoided_)
+    {
+      return cursor_;
+    }
+    put_off_.push_back(cursor_);
   }
-  return false;
+  return std::nullopt;
 }
 
 void Scheduler::closeCycle(TimePoint now)
@@ -418,6 +603,30 @@ void Scheduler::closeCycle(TimePoint now)
 
 std::optional<Pick> Scheduler::pickRefresh(TimePoint now, const std::vector<InverterView>& views)
 {
+  const auto of_cycle = cycle_first_ ? pickOfCycle(now, views) : std::nullopt;
+  const auto put_off = of_cycle ? of_cycle : pickPutOff(now, views);
+  return put_off || cycle_first_ ? put_off : pickOfCycle(now, views);
+}
+
+std::optional<Pick> Scheduler::pickPutOff(TimePoint now, const std::vector<InverterView>& views) const
+{
+  const auto put_off = std::find_if(put_off_.begin(), put_off_.end(), [&](std::size_t index) {
+    return index != avoided_ && views[index].refresh_not_before <= now;
+  });
+  if (put_off == put_off_.end())
+  {
+    return std::nullopt;
+  }
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *put_off;
+  return pick;
+}
+
+std::optional<Pick> Scheduler::pickOfCycle(TimePoint now, const std::vector<InverterView>& views)
+{
+  Pick pick;
+  pick.what = Pick::What::Refresh;
   // One round more than the divisor, so that a cycle without anybody cannot hide those at rest.
   for (unsigned round = 0; round <= settings_.idle_divisor; ++round)
   {
@@ -432,11 +641,9 @@ std::optional<Pick> Scheduler::pickRefresh(TimePoint now, const std::vector<Inve
       refreshed_in_cycle_ = false;
       cursor_ = 0;
     }
-    if (findNextOfCycle(now, views))
+    if (const auto next = nextOfCycle(now, views))
     {
-      Pick pick;
-      pick.what = Pick::What::Refresh;
-      pick.inverter = cursor_;
+      pick.inverter = *next;
       return pick;
     }
     closeCycle(now);
@@ -449,7 +656,7 @@ std::optional<Pick> Scheduler::pickBackground(const std::vector<InverterView>& v
   for (std::size_t step = 0; step < views.size(); ++step)
   {
     const std::size_t index = (background_cursor_ + step) % views.size();
-    if (views[index].background && !views[index].offline)
+    if (index != avoided_ && views[index].background && !views[index].offline)
     {
       Pick pick;
       pick.what = Pick::What::Background;
@@ -472,9 +679,12 @@ Pick Scheduler::nothing(TimePoint now, const std::vector<InverterView>& views) c
   };
   wakeAt(pause_until_);
   wakeAt(next_probe_);
-  for (const InverterView& view : views)
+  for (std::size_t index = 0; index < views.size(); ++index)
   {
+    const InverterView& view = views[index];
     wakeAt(view.refresh_not_before);
+    wakeAt(view.stop_pending ? view.stop_not_before : TimePoint());
+    wakeAt(view.offline ? last_probe_[index] + seconds(PROBE_PERIOD_S) : TimePoint());
     if (view.serve_by)
     {
       wakeAt(*view.serve_by);
@@ -494,33 +704,23 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
   if (pick.probe)
   {
     probe_cursor_ = pick.inverter + 1;
-    const Duration cost = answered ? Duration::zero() : end - start;
-    next_probe_ = end + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
+    last_probe_[pick.inverter] = end;
+    chargeProbe(end, answered ? Duration::zero() : end - start);
   }
+  last_inverter_ = pick.what == Pick::What::Stop ? std::nullopt : std::optional<std::size_t>(pick.inverter);
+  last_lost_ = last_inverter_ && !answered;
+  if (pick.what == Pick::What::Stop)
+  {
+    patient_until_ = answered ? end : end + (end - start);
+  }
+  last_command_ = pick.what == Pick::What::Command ? pick.command : 0;
   switch (pick.what)
   {
     case Pick::What::Command:
-    {
-      const auto ticket = find(pick.command);
-      if (ticket != tickets_.end() && more)
-      {
-        unit_ = ticket->command.kind == CommandKind::Velocity ? pick.command : unit_;
-        break;
-      }
-      ++commands_in_a_row_;
-      erase(pick.command);
+      doneCommand(pick, more);
       break;
-    }
     case Pick::What::Refresh:
-      commands_in_a_row_ = 0;
-      if (cycle_open_ && pick.inverter == cursor_)
-      {
-        refreshed_in_cycle_ = true;
-        cursor_ += more ? 0 : 1;
-      }
-      silent_at_deadline_[pick.inverter] = !answered;
-      // A repeat has no right to the next exchange: another drive's time may come meanwhile.
-      noteHalfRefresh(pick, more && answered);
+      doneRefresh(pick, more, answered);
       break;
     case Pick::What::Background:
       exchanges_without_background_ = 0;
@@ -531,16 +731,58 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
   }
 }
 
+void Scheduler::chargeProbe(TimePoint now, Duration cost)
+{
+  next_probe_ = now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
+}
+
+void Scheduler::doneCommand(const Pick& pick, bool more)
+{
+  const auto ticket = find(pick.command);
+  if (ticket == tickets_.end() || !more)
+  {
+    ++commands_in_a_row_;
+    erase(pick.command);
+    return;
+  }
+  ticket->begun = ticket->command.kind == CommandKind::Velocity;
+  ticket->served = pick.inverter;
+  ++ticket->frames;
+}
+
+void Scheduler::doneRefresh(const Pick& pick, bool more, bool answered)
+{
+  commands_in_a_row_ = 0;
+  silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
+  const bool was_put_off = isPutOff(pick.inverter);
+  put_off_.erase(std::remove(put_off_.begin(), put_off_.end(), pick.inverter), put_off_.end());
+  cycle_first_ = was_put_off && !(more && answered);
+  const bool in_turn = cycle_open_ && pick.inverter == cursor_;
+  refreshed_in_cycle_ = refreshed_in_cycle_ || in_turn;
+  if (more && answered && was_put_off)
+  {
+    put_off_.push_front(pick.inverter);
+  }
+  else if (more && !answered && (in_turn || was_put_off))
+  {
+    put_off_.push_back(pick.inverter);
+  }
+  cursor_ += in_turn && !(more && answered) ? 1 : 0;
+  // A repeat has no right to the next exchange: another drive's time may come meanwhile.
+  noteHalfRefresh(pick, more && answered);
+}
+
 void Scheduler::noteHalfRefresh(const Pick& pick, bool more)
 {
-  const bool by_deadline = pick.deadline || half_refreshed_ == pick.inverter;
-  if (more && by_deadline)
+  const auto half = std::find(half_refreshed_.begin(), half_refreshed_.end(), pick.inverter);
+  const bool was_half = half != half_refreshed_.end();
+  if (more && pick.deadline && !was_half)
   {
-    half_refreshed_ = pick.inverter;
+    half_refreshed_.push_back(pick.inverter);
   }
-  else
+  if (!more && was_half)
   {
-    half_refreshed_.reset();
+    half_refreshed_.erase(half);
   }
 }
 
@@ -566,11 +808,15 @@ std::uint64_t Scheduler::exchanges() const
   return exchanges_;
 }
 
-void Scheduler::restartCycle(TimePoint now)
+void Scheduler::restartCycle(TimePoint now, bool probes_at_once)
 {
   cycle_open_ = false;
   pause_until_ = now;
-  next_probe_ = now;
+  if (probes_at_once)
+  {
+    next_probe_ = now;
+    std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
+  }
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -6,6 +6,13 @@ namespace inverter_bus
 {
 namespace bus
 {
+namespace
+{
+// A stop that was confirmed so often in a row, and asked for again within so short a time, is one of a flood of them.
+constexpr unsigned FLOOD_OF_STOPS = 4;
+constexpr double FLOOD_PAUSE_S = 0.5;
+}  // namespace
+
 StopJob::StopJob(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
 {
 }
@@ -34,7 +41,12 @@ void StopJob::request(TimePoint now, StopMode mode)
   {
     return;
   }
-  attempts_ = pending_ ? attempts_ : 0;
+  if (!pending_)
+  {
+    attempts_ = 0;
+    repeats_ = confirmed_ && now - last_sent_at_ < seconds(FLOOD_PAUSE_S) ? repeats_ + 1 : 0;
+    confirmed_ = false;
+  }
   pending_ = sequenceFor(mode) != "stop" || drive_.sequence("stop") != nullptr;
   mode_ = mode;
   step_ = 0;
@@ -43,6 +55,8 @@ void StopJob::request(TimePoint now, StopMode mode)
   ++version_;
   requested_at_ = now;
   first_frame_left_ = false;
+  first_frame_answered_ = false;
+  provisional_ = false;
   last_error_ = 0;
 }
 
@@ -61,6 +75,16 @@ bool StopJob::written() const
   return step_ >= sequence()->steps.size();
 }
 
+bool StopJob::repeats() const
+{
+  return repeats_ >= FLOOD_OF_STOPS;
+}
+
+TimePoint StopJob::lastSentAt() const
+{
+  return last_sent_at_;
+}
+
 wire::Request StopJob::next() const
 {
   if (written())
@@ -73,6 +97,8 @@ wire::Request StopJob::next() const
 std::optional<Duration> StopJob::sent(TimePoint now)
 {
   version_on_wire_ = version_;
+  provisional_ = false;
+  last_sent_at_ = now;
   if (first_frame_left_)
   {
     return std::nullopt;
@@ -146,23 +172,64 @@ void StopJob::writeAgain()
   fail(wire::ERROR_TIMEOUT);
 }
 
+void StopJob::writeOnceMore()
+{
+  step_ = 0;
+  acknowledged_in_doubt_ = false;
+  provisional_ = true;
+}
+
+bool StopJob::provisional() const
+{
+  return provisional_;
+}
+
+std::optional<Duration> StopJob::answered(TimePoint now)
+{
+  if (!first_frame_left_ || first_frame_answered_)
+  {
+    return std::nullopt;
+  }
+  first_frame_answered_ = true;
+  return now - requested_at_;
+}
+
 bool StopJob::wantsClearLine() const
 {
   return wants_clear_line_;
 }
 
+void StopJob::hold()
+{
+  held_ = pending_;
+}
+
+bool StopJob::held() const
+{
+  return held_;
+}
+
 void StopJob::confirm()
 {
   pending_ = false;
+  held_ = false;
   step_ = 0;
   attempts_ = 0;
   acknowledged_in_doubt_ = false;
   wants_clear_line_ = false;
+  provisional_ = false;
+  confirmed_ = true;
 }
 
 void StopJob::cancel()
 {
   confirm();
+  confirmed_ = false;
+}
+
+void StopJob::forgetConfirmation()
+{
+  confirmed_ = false;
 }
 
 std::uint16_t StopJob::lastError() const

@@ -15,19 +15,20 @@ namespace
 {
 using Target = std::pair<std::size_t, double>;
 
-/// Of a refused group: the zeros, each inverter once.
-std::vector<Target> zerosOf(const std::vector<Target>& targets)
+/// Of a refused group: what stops, each inverter once. An exact 0 goes before one near it, since only it unlocks.
+std::vector<Target> stopsOf(std::vector<Target> targets, const Stops& stops)
 {
+  std::stable_partition(targets.begin(), targets.end(), [](const Target& target) { return target.second == 0.0; });
   std::set<std::size_t> stopped;
-  std::vector<Target> zeros;
+  std::vector<Target> stopping;
   for (const Target& target : targets)
   {
-    if (target.second == 0.0 && stopped.insert(target.first).second)
+    if (stops(target.first, target.second) && stopped.insert(target.first).second)
     {
-      zeros.push_back(target);
+      stopping.push_back(target);
     }
   }
-  return zeros;
+  return stopping;
 }
 
 /// The first problem is told: the others would say no more, and a message may have a million.
@@ -41,7 +42,7 @@ void complain(VelocityGroup& group, const std::string& name, const char* why)
 }  // namespace
 
 VelocityGroup resolveGroup(const std::vector<std::string>& names, const std::vector<double>& velocities,
-                           const std::map<std::string, std::size_t>& index_by_name)
+                           const std::map<std::string, std::size_t>& index_by_name, const Stops& stops)
 {
   VelocityGroup group;
   if (names.size() != velocities.size())
@@ -70,7 +71,7 @@ VelocityGroup resolveGroup(const std::vector<std::string>& names, const std::vec
   group.named.assign(seen.begin(), seen.end());
   if (!group.problem.empty())
   {
-    group.targets = zerosOf(group.targets);
+    group.targets = stopsOf(group.targets, stops);
   }
   return group;
 }

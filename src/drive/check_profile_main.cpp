@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 // check_profile FILE: says what is wrong with a drive profile, or that nothing is.
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -12,6 +13,11 @@
 
 namespace
 {
+const char* const USAGE =
+    "usage: check_profile [--help] [--] FILE\n"
+    "Says what is wrong with a drive profile (one line per mistake, exit status 1), or what it holds (exit status "
+    "0).\n";
+
 std::string nameList(const std::set<std::string>& names)
 {
   std::string text;
@@ -40,12 +46,25 @@ void printSummary(const std::string& path, const inverter_bus::drive::Profile& p
 
 int main(int argc, char** argv)
 {
-  if (argc != 2)
+  std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  const bool only_files = !arguments.empty() && arguments.front() == "--";
+  if (only_files)
   {
-    std::fprintf(stderr, "usage: check_profile FILE\n");
+    arguments.erase(arguments.begin());
+  }
+  const std::string first = arguments.empty() ? "" : arguments.front();
+  if (!only_files && (first == "-h" || first == "--help"))
+  {
+    std::fputs(USAGE, stdout);
+    return 0;
+  }
+  const bool option = !only_files && !first.empty() && first[0] == '-';
+  if (arguments.size() != 1 || option)
+  {
+    std::fprintf(stderr, "%s%s", option ? ("unknown option '" + first + "'\n").c_str() : "", USAGE);
     return 2;
   }
-  const std::string path = argv[1];
+  const std::string& path = first;
   const std::vector<std::string> mistakes = inverter_bus::drive::checkProfile(path);
   for (const std::string& mistake : mistakes)
   {

@@ -127,7 +127,12 @@ void decodeField(const std::string& field, const Item& item, std::uint32_t raw, 
   const auto amount = quantityFields().find(field);
   if (flag != flagFields().end())
   {
-    monitor.*(flag->second) = flagValue(item, raw);
+    const std::optional<bool> value = flagValue(item, raw);
+    monitor.*(flag->second) = value;
+    if (field == "faulted" && !value)
+    {
+      monitor.unknown_trip = raw;
+    }
   }
   else if (amount != quantityFields().end())
   {

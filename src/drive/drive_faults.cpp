@@ -6,6 +6,7 @@
 
 #include "codec.h"
 #include "inverter_bus/drive/drive.h"
+#include "numbers.h"
 #include "read_plan.h"
 #include "status_fields.h"
 
@@ -91,6 +92,18 @@ std::string Drive::faultText(std::uint16_t code) const
     return "";
   }
   return text != profile_.faults.end() ? text->second : "unknown trip " + std::to_string(code);
+}
+
+std::string Drive::tripText(const Monitor& monitor) const
+{
+  const std::uint16_t code = monitor.fault_code.value_or(0);
+  if (!monitor.unknown_trip)
+  {
+    return "trip " + std::to_string(code) + ": " + (code == 0 ? "no reason given" : faultText(code));
+  }
+  return "unknown state " + std::to_string(*monitor.unknown_trip) + " (" + formatHex(*monitor.unknown_trip) +
+         ") of faulted, which stands in no table and counts as a trip" +
+         (code == 0 ? "" : "; trip " + std::to_string(code) + ": " + faultText(code));
 }
 
 namespace

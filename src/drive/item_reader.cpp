@@ -214,11 +214,23 @@ void readBits(YamlMap& map, const ItemRules& rules, Item& item)
       item.bit = static_cast<unsigned>(bit);
     }
   }
+  if (const auto nonzero = rules.bit ? map.find("nonzero") : std::nullopt)
+  {
+    item.nonzero = nonzero->flag().value_or(true);
+    if (!item.nonzero)
+    {
+      nonzero->reject("true");
+    }
+  }
   const std::int64_t largest = largestRaw(item);
   item.mask = static_cast<std::uint32_t>(map.integer("mask", 1, largest, 0xFFFFFFFFLL));
   if (has_bit && (item.size != 1 || map.has("mask") || map.has("signed") || map.has("resolution") || map.has("values")))
   {
     map.cursor().complain("a bit has a register of one word and neither mask, signed, resolution nor values");
+  }
+  if (map.has("nonzero") && (has_bit || map.has("values") || map.has("signed") || map.has("resolution")))
+  {
+    map.cursor().complain("nonzero excludes bit, values, signed and resolution");
   }
   if (map.has("mask") && item.is_signed)
   {

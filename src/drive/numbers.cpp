@@ -8,6 +8,8 @@
 #include <locale>
 #include <sstream>
 
+#include "inverter_bus/wire/shown_number.h"
+
 namespace inverter_bus
 {
 namespace drive
@@ -147,11 +149,7 @@ std::optional<double> parseNumber(const std::string& text)
 
 std::string formatNumber(double value)
 {
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream.precision(12);
-  stream << value;
-  return stream.str();
+  return wire::shownNumber(value, 12);
 }
 
 std::string formatHex(std::uint32_t value)

@@ -15,6 +15,11 @@ namespace
 {
 /// Whoever has more mistakes than these mends the first ones first.
 constexpr std::size_t MOST_LINES = 50;
+
+std::string lineOf(const std::string& where, const std::string& key, const std::string& what)
+{
+  return oneLine(where + ": " + (key.empty() ? "" : "key '" + wire::shown(key) + "': ") + what);
+}
 }  // namespace
 
 std::string oneLine(const std::string& text)
@@ -30,7 +35,20 @@ void Problems::add(const std::string& where, const std::string& key, const std::
     ++more_;
     return;
   }
-  lines_.push_back(oneLine(where + ": " + (key.empty() ? "" : "key '" + wire::shown(key) + "': ") + what));
+  lines_.push_back(lineOf(where, key, what));
+}
+
+void Problems::addHarmless(const std::string& where, const std::string& key, const std::string& what)
+{
+  if (harmless_.size() < MOST_LINES)
+  {
+    harmless_.push_back(lineOf(where, key, what));
+  }
+}
+
+const std::vector<std::string>& Problems::harmless() const
+{
+  return harmless_;
 }
 
 bool Problems::empty() const

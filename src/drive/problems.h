@@ -17,12 +17,17 @@ class Problems
 public:
   /// \p where "file:line" or the scan list entry, \p key the way to the value ("points.run.coil"), may be empty.
   void add(const std::string& where, const std::string& key, const std::string& what);
+  /// A mistake for which only the value in question is left out.
+  void addHarmless(const std::string& where, const std::string& key, const std::string& what);
+  /// Nothing but harmless mistakes.
   bool empty() const;
   /// The first mistakes, and at the end how many more there were.
   std::vector<std::string> lines() const;
+  const std::vector<std::string>& harmless() const;
 
 private:
   std::vector<std::string> lines_;
+  std::vector<std::string> harmless_;
   std::size_t more_ = 0;
 };
 }  // namespace drive

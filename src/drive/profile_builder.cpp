@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <string>
 
+#include "units.h"
+
 namespace inverter_bus
 {
 namespace drive
@@ -66,6 +68,17 @@ Profile buildProfile(const YamlValue& root, Problems& problems)
     settleUnconfirmed(profile);
   }
   return profile;
+}
+
+bool leftOutForUnit(const std::string& field, const Item& item, const YamlCursor& cursor)
+{
+  const std::string mistake = unitMistake(field, item);
+  if (mistake.empty())
+  {
+    return false;
+  }
+  cursor.problems().addHarmless(cursor.value().where, cursor.path(), mistake + "; until then it is not shown");
+  return true;
 }
 
 unsigned Profile::position(std::uint16_t number) const

@@ -33,6 +33,10 @@ void readRatings(YamlMap& root, Profile& profile);
 void readParameters(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readSupervision(YamlMap& root, Profile& profile);
 
+/// Whether \p item is left out of \p field, since its unit is not the field's: a value that is a thousand times too large
+/// is worse than none. Notes a harmless mistake then.
+bool leftOutForUnit(const std::string& field, const Item& item, const YamlCursor& cursor);
+
 /// Names that operation_codes may have.
 const std::vector<std::string>& operationCodeNames();
 

@@ -338,7 +338,8 @@ void checkAbilities(const YamlValue& root, const Profile& profile, Problems& pro
   else if (!asks)
   {
     locate(root, "status", problems)
-        .complain("has no confirmed field that is read in every refresh: needs one, or keep_alive");
+        .complain(
+            "has no confirmed field that is read in every refresh: needs one (that is not left out), or keep_alive");
   }
 }
 

@@ -9,6 +9,7 @@
 #include "problems.h"
 #include "profile_builder.h"
 #include "profile_overrides.h"
+#include "profile_skip.h"
 #include "yaml_reader.h"
 #include "yaml_value.h"
 
@@ -87,8 +88,10 @@ Profile readProfile(const std::string& path, const ProfileChanges& changes, Prob
   applyOverrides(*root, changes, problems);
   const std::string& place = changes.confirm_place.empty() ? changes.place : changes.confirm_place;
   confirm(*root, markNames(changes.confirm, known, constants), known, place.empty() ? path : place, problems);
+  skipFields(*root, changes.skip);
   Profile profile = buildProfile(*root, problems);
   profile.file = path;
+  profile.mistakes = problems.harmless();
   return profile;
 }
 }  // namespace
@@ -125,7 +128,10 @@ std::vector<std::string> checkProfile(const std::string& path)
 {
   Problems problems;
   readProfile(path, ProfileChanges(), problems);
-  return problems.lines();
+  std::vector<std::string> lines = problems.lines();
+  const std::vector<std::string> harmless = problems.harmless();
+  lines.insert(lines.end(), harmless.begin(), harmless.end());
+  return lines;
 }
 }  // namespace drive
 }  // namespace inverter_bus

@@ -21,8 +21,9 @@ const std::string RANGE_MARK = "range_unconfirmed";
 bool confirms(const YamlEntry& entry)
 {
   static const std::set<std::string> KEYS = {
-    "register", "coil",  "count", "words", "signed", "resolution", "bit",      "mask",      "values",
-    "offset",   "steps", "text",  "value", "base",   "of",         "variable", "operation", "controller_status"
+    "register",         "coil",   "count", "words", "signed", "resolution", "bit", "mask",     "values",
+    "nonzero",          "offset", "steps", "text",  "value",  "base",       "of",  "variable", "operation",
+    "controller_status"
   };
   return KEYS.count(entry.key) != 0;
 }
@@ -47,6 +48,28 @@ void removeMarks(YamlValue& base, const YamlValue& change)
   if (change.find("range") != nullptr)
   {
     base.erase(RANGE_MARK);
+  }
+}
+
+/// {bit: 3} over {values: ...}, {nonzero: true} over {bit: 3}: another way to read the place, so the old one goes.
+void removeOtherReading(YamlValue& base, const YamlValue& change)
+{
+  static const std::vector<std::string> READINGS = { "bit", "values", "nonzero" };
+  const auto given = [&change](const std::string& key) { return change.find(key) != nullptr; };
+  if (std::none_of(READINGS.begin(), READINGS.end(), given))
+  {
+    return;
+  }
+  for (const std::string& key : READINGS)
+  {
+    if (!given(key))
+    {
+      base.erase(key);
+    }
+  }
+  if (given("bit"))
+  {
+    base.erase("mask");
   }
 }
 
@@ -176,6 +199,7 @@ void mergeOverrides(YamlValue& root, const YamlValue& changes)
     return;
   }
   removeMarks(root, changes);
+  removeOtherReading(root, changes);
   for (const YamlEntry& change : changes.entries)
   {
     if (YamlValue* found = root.find(change.key))

@@ -7,6 +7,7 @@
 
 #include "numbers.h"
 #include "profile_builder.h"
+#include "units.h"
 
 namespace inverter_bus
 {
@@ -31,6 +32,12 @@ void readPoint(const std::string& name, const YamlCursor& cursor, const Numberin
   const auto item = readItem(map, numbering, rules);
   const bool wears = map.flag("wears", false);
   map.finish();
+  const std::string unit_mistake = item && name == "frequency" ? unitMistake("output_frequency", *item) : "";
+  if (!unit_mistake.empty())
+  {
+    // Not harmless: the motor would turn at another speed than commanded.
+    cursor.complain(unit_mistake);
+  }
   if (map.has("mask"))
   {
     cursor.complain("mask is for reading; a point is written as a whole");

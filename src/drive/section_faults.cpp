@@ -114,7 +114,8 @@ std::map<std::string, Item> readOffsetFields(const YamlCursor& cursor, Profile& 
       field.complain("unknown key: allowed: " + allowedRecordFields());
       continue;
     }
-    if (const auto item = readOffsetItem(field))
+    const auto item = readOffsetItem(field);
+    if (item && !leftOutForUnit(name, *item, field))
     {
       fields[name] = *item;
       noteMark(*item, profile);
@@ -179,7 +180,7 @@ void readListedHistory(const YamlCursor& cursor, const Numbering& numbering, Pro
       YamlMap map(field);
       const auto item = readItem(map, numbering, rules);
       map.finish();
-      if (item)
+      if (item && !leftOutForUnit(name, *item, field))
       {
         entry[name] = *item;
         noteMark(*item, profile);

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the inverter_bus authors
 // Section status: what the driver reads in every refresh.
 
+#include <algorithm>
+
 #include "profile_builder.h"
 #include "status_fields.h"
 
@@ -72,9 +74,9 @@ void checkMeaning(FieldKind kind, const std::string& field, const Item& item, co
   }
   if (kind == FieldKind::Flag)
   {
-    if (item.space != Space::Coil && !item.bit && item.values.empty())
+    if (item.space != Space::Coil && !item.bit && !item.nonzero && item.values.empty())
     {
-      cursor.complain("a register that is true or false needs bit or values");
+      cursor.complain("a register that is true or false needs bit, values or nonzero");
     }
     for (const auto& [raw, meaning] : item.values)
     {
@@ -83,6 +85,11 @@ void checkMeaning(FieldKind kind, const std::string& field, const Item& item, co
         cursor.complain("raw value " + std::to_string(raw) + ": allowed meanings: 0, 1");
       }
     }
+  }
+  const auto means_no_trip = [](const auto& entry) { return entry.second == 0; };
+  if (field == "faulted" && !item.values.empty() && std::none_of(item.values.begin(), item.values.end(), means_no_trip))
+  {
+    cursor.complain("values name none that means 0, no trip: a value that stands in no table counts as a trip");
   }
   if (field == "fault_code" && largestRaw(item) > 0xFFFF)
   {
@@ -109,11 +116,19 @@ void readField(const std::string& field, const YamlCursor& cursor, const Numberi
   {
     cursor.complain("slow and when exclude each other");
   }
+  if (field == "faulted" && (slow || when_faulted))
+  {
+    cursor.complain("is read in every refresh, since a trip must not be missed: neither slow nor when");
+  }
   if (!item)
   {
     return;
   }
   checkMeaning(kind, field, *item, cursor);
+  if (leftOutForUnit(field, *item, cursor))
+  {
+    return;
+  }
   profile.status[field] = *item;
   if (slow)
   {

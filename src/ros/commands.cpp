@@ -117,7 +117,8 @@ void Commands::onCommand(std::size_t index, const ros::MessageEvent<std_msgs::Fl
 void Commands::onGroup(const ros::MessageEvent<VelocityCommand const>& event)
 {
   const VelocityCommand& message = *event.getConstMessage();
-  bus::VelocityGroup group = bus::resolveGroup(message.name, message.velocity, index_by_name_);
+  const auto stops = [this](std::size_t index, double velocity) { return bus_.stops(index, velocity); };
+  bus::VelocityGroup group = bus::resolveGroup(message.name, message.velocity, index_by_name_, stops);
   bus::VelocityCommand command;
   command.targets = std::move(group.targets);
   command.grouped = true;

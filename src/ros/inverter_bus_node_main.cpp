@@ -5,13 +5,27 @@
 
 #include <ros/init.h>
 
+#include "inverter_bus/ros/command_line.h"
 #include "inverter_bus/ros/lifetime.h"
 #include "inverter_bus/ros/node.h"
 #include "inverter_bus/ros/start_up.h"
 
+namespace
+{
+const char* const USAGE =
+    "usage: inverter_bus_node [--help] [__name:=NAME] [_PARAMETER:=VALUE] [FROM:=TO]...\n"
+    "Drives the frequency inverters of one bus. It wants the parameter scan_list, best loaded by a launch file:\n"
+    "  roslaunch inverter_bus bus.launch config:=/path/to/scan_list.yaml name:=conveyor\n"
+    "Parameters, topics and services stand in the package's README.md.\n";
+}  // namespace
+
 int main(int argc, char** argv)
 {
   using namespace inverter_bus::ros_node;
+  if (const auto status = answerCommandLine(argc, argv, USAGE))
+  {
+    return *status;
+  }
   // rosconsole writes to both stdout and stderr: without this, a log that takes both has its lines out of order.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try

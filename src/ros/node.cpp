@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -45,16 +46,33 @@ std::optional<bus::Configuration> readNodeConfiguration()
   }
 }
 
-void logStart(const bus::BusConfig& config, const std::vector<std::string>& warnings, const bus::Bus& bus)
+/// Several inverters may have the same profile: each mistake is told once.
+void logMistakes(const std::vector<drive::Drive>& drives)
 {
-  for (const std::string& warning : warnings)
+  std::set<std::string> told;
+  for (const drive::Drive& drive : drives)
+  {
+    for (const std::string& mistake : drive.profile().mistakes)
+    {
+      if (told.insert(mistake).second)
+      {
+        log(bus::Level::Warn, mistake);
+      }
+    }
+  }
+}
+
+void logStart(const bus::Configuration& configuration, const bus::Bus& bus)
+{
+  for (const std::string& warning : configuration.warnings)
   {
     log(bus::Level::Warn, warning);
   }
-  for (const std::string& line : effectiveConfiguration(config))
+  for (const std::string& line : effectiveConfiguration(configuration.bus))
   {
     log(bus::Level::Ok, line);
   }
+  logMistakes(configuration.drives);
   for (const bus::Finding& finding : bus.budget())
   {
     log(finding.level, finding.text);
@@ -88,7 +106,7 @@ void logEnd(int status, const bus::BusConfig& config, const std::vector<std::str
   else if (status != 0)
   {
     log(bus::Level::Error, "port " + config.port +
-                               " is in use by another program, tried for 15 s: end that program "
+                               " is in use by another program, tried for 30 s: end that program "
                                "or choose another port");
   }
   else
@@ -112,7 +130,7 @@ int runNode(Lifetime& lifetime)
                     [](const std::string& text) { log(bus::Level::Warn, text); });
   Publishing publishing(node, *configuration, traces);
   bus::Bus bus(*configuration, bus::makePort(config), publishing);
-  logStart(config, configuration->warnings, bus);
+  logStart(*configuration, bus);
   Services services(node, config, bus, traces);
   Commands commands(node, config, bus);
   MasterWatch master_watch;

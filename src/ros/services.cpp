@@ -12,6 +12,7 @@
 #include "inverter_bus/ros/status_conversion.h"
 #include "inverter_bus/ros/steady_event.h"
 #include "inverter_bus/wire/request.h"
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -55,7 +56,7 @@ bus::Answer ask(double bound, const std::function<void(bus::AnswerCallback)>& st
   {
     return slot->answer;
   }
-  return timeoutAnswer("the bus gave no answer in " + std::to_string(bound + MARGIN) + " s: see /diagnostics");
+  return timeoutAnswer("the bus gave no answer in " + wire::shownNumber(bound + MARGIN) + " s: see /diagnostics");
 }
 
 template <typename Response>

@@ -17,6 +17,7 @@
 #include "inverter_bus/InjectFault.h"
 #include "inverter_bus/bench/scan_list.h"
 #include "inverter_bus/drive/profile.h"
+#include "inverter_bus/ros/command_line.h"
 #include "inverter_bus/ros/parameters.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "inverter_bus/simulation/bus_runner.h"
@@ -25,6 +26,12 @@
 namespace
 {
 namespace sim = inverter_bus::simulation;
+
+const char* const USAGE =
+    "usage: simulated_bus_node [--help] [__name:=NAME] [_link:=PATH] [_PARAMETER:=VALUE] [FROM:=TO]...\n"
+    "Plays the drives of a scan list on a pseudo-terminal. It wants the parameters scan_list and link (or port: the "
+    "name\n"
+    "of the link to the terminal), best by simulated_bus.launch. Without ROS: simulated_bus --help\n";
 
 /// Parameters of this node beside those of the driver; `port` is the driver's too, and the link where there is no `link`.
 const char* const OWN_KEYS[] = { "link", "gap", "gap_tolerance", "turnaround", "seed", "trace", "client_parity" };
@@ -151,6 +158,10 @@ void play(ros::NodeHandle& node)
 
 int main(int argc, char** argv)
 {
+  if (const auto status = inverter_bus::ros_node::answerCommandLine(argc, argv, USAGE))
+  {
+    return *status;
+  }
   ros::init(argc, argv, "simulated_bus");
   const auto onSignal = [](int) { ros::requestShutdown(); };
   std::signal(SIGTERM, onSignal);  // roscpp itself looks after SIGINT only

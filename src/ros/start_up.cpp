@@ -8,6 +8,7 @@
 #include <ros/master.h>
 
 #include "inverter_bus/ros/log.h"
+#include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -51,9 +52,9 @@ std::string busLine(const bus::BusConfig& config)
   line << "port " << config.port << ", " << config.protocol << ", " << config.serial.baud_rate << " baud "
        << config.serial.data_bits << parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
        << rs485Text(config.serial.rs485) << (config.exclusive ? ", exclusive" : ", shared") << ", interval "
-       << config.interval << " s, response_timeout " << config.response_timeout << " s, retries " << config.retries
-       << ", offline_after " << config.offline_after << ", idle_divisor " << config.idle_divisor
-       << ", realtime_priority " << config.realtime_priority << ", parameter_access "
+       << wire::shownNumber(config.interval) << " s, response_timeout " << wire::shownNumber(config.response_timeout)
+       << " s, retries " << config.retries << ", offline_after " << config.offline_after << ", idle_divisor "
+       << config.idle_divisor << ", realtime_priority " << config.realtime_priority << ", parameter_access "
        << (config.parameters_read_only ? "read_only" : "read_write") << ", trace_directory " << config.trace_directory;
   return line.str();
 }
@@ -62,16 +63,21 @@ std::string inverterLine(const bus::InverterConfig& config)
 {
   std::ostringstream line;
   line << config.name << ": station " << static_cast<int>(config.node) << ", " << config.drive << ", "
-       << config.hz_per_unit << " Hz per unit, velocity " << config.min_velocity << " to " << config.max_velocity
-       << ", command_timeout " << config.command_timeout << " s"
+       << wire::shownNumber(config.hz_per_unit) << " Hz per unit, velocity " << wire::shownNumber(config.min_velocity)
+       << " to " << wire::shownNumber(config.max_velocity) << ", command_timeout "
+       << wire::shownNumber(config.command_timeout) << " s"
        << (config.command_timeout > 0.0 ? "" : " (never stopped by silence)") << ", response_timeout "
-       << config.response_timeout << " s";
+       << wire::shownNumber(config.response_timeout) << " s";
   line << (config.stop_unexpected_motion ? ", stop_unexpected_motion" : "")
        << (config.release_on_exit ? ", release_on_exit" : "")
        << (config.changes.overrides_yaml.empty() ? "" : ", with overrides");
   for (const std::string& name : config.changes.confirm)
   {
     line << ", confirmed: " << name;
+  }
+  for (const std::string& field : config.skip)
+  {
+    line << ", skipped: " << field;
   }
   return line.str();
 }

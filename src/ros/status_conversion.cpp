@@ -79,6 +79,10 @@ void putCodes(const drive::Monitor& monitor, const drive::Drive& drive, Inverter
   {
     message.fault_text = drive.faultText(*monitor.fault_code);
   }
+  if (monitor.unknown_trip)
+  {
+    message.fault_text = drive.tripText(monitor);
+  }
   if (monitor.warning_code)
   {
     message.warning_text = drive.warningText(*monitor.warning_code);

@@ -24,7 +24,8 @@ const char* const HELP =
     "help; list; bus show|frames [N]|unplug [S]|plug|echo on/off|silent on/off/S|noise [N]|foreign HEX (CompoWay/F: "
     "BODY) [now] "
     "[raw]|reset; "
-    "NAME show|get CODE|set CODE X|offline [S]|online|trip N|clear|busy S|power_cycle [S]|power on/off|panel HZ|"
+    "NAME show|get CODE|set CODE X|offline [S]|online|trip N [state S]|clear|busy S|power_cycle [S]|power on/off|panel "
+    "HZ|"
     "panel_release|panel_stop|sto on/off|load X|damaged|truncated [BYTES]|noise [BYTES]|late S|foreign station/shape|"
     "exception N|lost_request|lost_reply [count N] [for S] [function F]";
 
@@ -331,6 +332,10 @@ std::map<std::string, DriveAction> handActions()
     { "trip",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
         check(d.trip(static_cast<int>(w.takeNumber("trip code", 1, 65535)), now));
+        if (w.takeIf("state"))
+        {
+          check(d.showTripAs(static_cast<unsigned>(w.takeNumber("state", 0, 65535))));
+        }
         return std::string();
       } },
     { "busy",

@@ -372,6 +372,7 @@ void HitachiDrive::doTrip(int code)
   trips_.pop_back();
   ++trip_count_;
   tripped_ = true;
+  trip_state_ = TRIP_STATE;
   trip_after_stop_ = false;
   control();
 }
@@ -431,6 +432,12 @@ Refusal HitachiDrive::trip(int code, TimePoint now)
     return "trip code out of range (1-99)";
   }
   doTrip(code);
+  return std::nullopt;
+}
+
+Refusal HitachiDrive::showTripAs(unsigned state)
+{
+  trip_state_ = state;
   return std::nullopt;
 }
 

@@ -53,7 +53,9 @@ void HitachiDrive::buildMonitors()
 {
   const auto zero = [] { return 0.0; };
   addMonitor(0x0003, 1, [this] { return tripped_ ? 8.0 : (motor_.turning() || runCommanded() ? 3.0 : 2.0); });
-  addMonitor(0x0004, 1, [this] { return tripped_ ? 2.0 : (motor_.turning() || runCommanded() ? 1.0 : 0.0); });
+  addMonitor(0x0004, 1, [this] {
+    return tripped_ ? static_cast<double>(trip_state_) : (motor_.turning() || runCommanded() ? 1.0 : 0.0);
+  });
   addMonitor(0x0005, 1, [this] {  // status C
     const bool reversing = motor_.decelerating() && motor_.target() * motor_.frequency() < 0.0;
     const double ramp = motor_.accelerating() ? 4.0 : (motor_.decelerating() ? 2.0 : 3.0);

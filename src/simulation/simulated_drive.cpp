@@ -299,6 +299,11 @@ void SimulatedDrive::powerOn(TimePoint now)
   }
 }
 
+Refusal SimulatedDrive::showTripAs(unsigned)
+{
+  return "this drive has no state word of its own";
+}
+
 KeyValues SimulatedDrive::describe() const
 {
   KeyValues values{ { "name", name_ }, { "station", std::to_string(station_) } };

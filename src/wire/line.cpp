@@ -5,64 +5,27 @@
 #include <algorithm>
 #include <utility>
 
+#include "line_waiting.h"
+
 namespace inverter_bus
 {
 namespace wire
 {
 namespace
 {
-/// settle() gives up after this long: babble on the line cannot stop a stop.
-constexpr std::chrono::milliseconds LONGEST_SETTLING{ 100 };
-/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter).
+/// What a reply may exceed its computed length by: characters (noise before it) and time (delivery by the adapter, or the
+/// pause that is allowed for if that is longer).
 constexpr double REPLY_SLACK_CHARACTERS = 16.0;
 constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
-/// Station and function: from here on something is likelier to be a frame than noise.
-constexpr std::size_t LIKELY_FRAME = 2;
-
-Outcome outcomeOf(const Parsed& answer)
-{
-  switch (answer.kind)
-  {
-    case Parsed::Kind::Reply:
-      return Outcome::Ok;
-    case Parsed::Kind::NotUnderstood:
-      return Outcome::Damaged;
-    default:
-      return answer.error_id == ERROR_TIMEOUT ? Outcome::Timeout : Outcome::Exception;
-  }
-}
 }  // namespace
-
-/// An exchange whose request has been sent.
-struct Line::Waiting
-{
-  explicit Waiting(const Request& asked) : request(asked)
-  {
-  }
-
-  const Request& request;
-  /// What the request is remembered by if it gets lost.
-  std::string shape;
-  TimePoint sent_at;
-  TimePoint request_end;
-  /// The first byte must have come by then.
-  TimePoint first_byte_deadline;
-  /// Everything must have.
-  TimePoint last_deadline;
-  std::size_t reply_length = 0;
-  /// Estimated beginning of the bytes that are in the buffer, once there are any.
-  std::optional<TimePoint> first_byte_at;
-  /// The awaited reply has begun.
-  bool begun = false;
-  /// A valid frame came that nobody here had asked for.
-  bool foreign = false;
-  /// No further bytes will come: the beginning of a frame will not become one.
-  bool over = false;
-};
 
 Line::Line(Port& port, Protocol& protocol, Clock& clock, LineTiming timing)
   : port_(port), protocol_(protocol), clock_(clock), timing_(timing)
 {
+  if (protocol_.gatewayGapCharacters() > 0.0)
+  {
+    gateway_.emplace();
+  }
 }
 
 void Line::setFrameObserver(FrameObserver observer)
@@ -72,12 +35,25 @@ void Line::setFrameObserver(FrameObserver observer)
 
 OpenResult Line::open(std::string& error)
 {
+  const OpenResult result = port_.open(error);
+  if (result != OpenResult::Opened)
+  {
+    return result;
+  }
   buffer_.clear();
   damaged_.clear();
   bars_.clear();
   echo_.forget();
   silent_request_.reset();
-  const OpenResult result = port_.open(error);
+  telnet_.forget();
+  words_.forget();
+  last_loss_ = Loss::None;
+  proven_ = false;
+  behind_reply_ = false;
+  if (gateway_)
+  {
+    gateway_->opened();
+  }
   // Somebody else's frame may have been under way.
   last_use_at_ = clock_.now();
   ready_at_ = last_use_at_ + gap();
@@ -87,6 +63,11 @@ OpenResult Line::open(std::string& error)
 void Line::close()
 {
   port_.close();
+}
+
+void Line::abandon()
+{
+  port_.abandon();
 }
 
 bool Line::isOpen() const
@@ -104,42 +85,16 @@ bool Line::settle()
   return settle(Duration{ 0 });
 }
 
-/// \p quiet silence to wait for beyond readyAt().
-bool Line::settle(Duration quiet)
-{
-  if (!port_.isOpen())
-  {
-    return false;
-  }
-  const auto quiet_at = [this, quiet] { return std::max(ready_at_, last_use_at_ + quiet); };
-  const TimePoint give_up = std::max(clock_.now(), quiet_at()) + LONGEST_SETTLING;
-  ReceiveResult result = ReceiveResult::Data;
-  while (result == ReceiveResult::Data)
-  {
-    // The rest of a late reply that an adapter delivers in pieces must not run into the next exchange.
-    const bool half_a_frame = buffer_.size() >= LIKELY_FRAME;
-    const TimePoint rest = half_a_frame ? last_byte_at_ + timing_.patience(protocol_.gapCharacters()) : ready_at_;
-    result = receive(std::min(std::max(quiet_at(), rest), give_up));
-    consumeIdle();
-    result = result == ReceiveResult::Data && clock_.now() >= give_up ? ReceiveResult::Silence : result;
-  }
-  flushIdle();
-  ready_at_ = std::min(ready_at_, clock_.now());
-  if (result == ReceiveResult::Gone)
-  {
-    port_.close();
-  }
-  return result == ReceiveResult::Silence;
-}
-
 bool Line::mayAsk(const Request& request) const
 {
-  return bars_.barredUntil(protocol_.shape(request)) <= clock_.now();
+  return mayAskAt(request) <= clock_.now();
 }
 
 TimePoint Line::mayAskAt(const Request& request) const
 {
-  return std::max(bars_.barredUntil(protocol_.shape(request)), clock_.now());
+  const std::string shape = protocol_.shape(request);
+  const TimePoint now = clock_.now();
+  return gateway_ ? gateway_->mayAskAt(shape, now) : std::max(bars_.barredUntil(shape), now);
 }
 
 Reply Line::exchange(const Request& request, Duration turnaround_after)
@@ -152,7 +107,6 @@ Reply Line::exchange(const Request& request, Duration turnaround_after)
     return reply;
   }
   silent_request_.reset();
-  const std::string shape = protocol_.shape(request);
   const Bytes frame = protocol_.frame(request);
   if (!send(frame, reply))
   {
@@ -161,7 +115,8 @@ Reply Line::exchange(const Request& request, Duration turnaround_after)
   }
   expectEcho(request, frame);
   Waiting waiting = startWaiting(request, reply.sent_at);
-  waiting.shape = shape;
+  waiting.shape = protocol_.shape(request);
+  noteAsked(waiting, reply);
   last_use_at_ = waiting.request_end;
   ready_at_ = waiting.request_end + (request.broadcast ? std::max(gap(), turnaround_after) : gap());
   waitForReply(waiting, reply);
@@ -183,6 +138,54 @@ bool Line::echoFound() const
   return echo_.found();
 }
 
+Loss Line::lastLoss() const
+{
+  return last_loss_;
+}
+
+bool Line::provenSinceOpen() const
+{
+  return proven_;
+}
+
+bool Line::telnetFound() const
+{
+  return telnet_.found();
+}
+
+std::string Line::peerWords() const
+{
+  return words_.text();
+}
+
+std::vector<Outstanding> Line::outstanding() const
+{
+  return gateway_ ? gateway_->outstanding() : std::vector<Outstanding>();
+}
+
+bool Line::gatewayTrusted() const
+{
+  return gateway_ && gateway_->trusted();
+}
+
+std::string Line::gatewayQuirk() const
+{
+  return gateway_ ? gateway_->quirk() : "";
+}
+
+std::string Line::mustReopen() const
+{
+  return gateway_ && port_.isOpen() ? gateway_->mustReopen(clock_.now()) : "";
+}
+
+void Line::setGatewayTimeout(Duration timeout)
+{
+  if (gateway_)
+  {
+    gateway_->setTimeout(timeout);
+  }
+}
+
 std::vector<LateReply> Line::takeLateReplies()
 {
   return std::exchange(late_, {});
@@ -191,18 +194,42 @@ std::vector<LateReply> Line::takeLateReplies()
 bool Line::send(const Bytes& frame, Reply& reply)
 {
   reply.sent_at = clock_.now();
-  if (!port_.isOpen() || !port_.send(frame))
+  if (!port_.isOpen() || !port_.send(telnet_.sent(frame)))
   {
     return false;
   }
-  ++counters_.requests;
+  reply.ticket = ++counters_.requests;
   observe(FrameEvent::Kind::Request, frame, reply.sent_at);
   return true;
+}
+
+/// Tells the gateway's record what is under way.
+void Line::noteAsked(const Waiting& waiting, const Reply& reply)
+{
+  if (!gateway_)
+  {
+    return;
+  }
+  GatewayRecord::Asked asked;
+  asked.ticket = reply.ticket;
+  asked.number = protocol_.lastNumber();
+  asked.station = waiting.request.station;
+  asked.shape = waiting.shape;
+  asked.sent_at = reply.sent_at;
+  asked.request_end = waiting.request_end;
+  asked.silent = waiting.request.broadcast || !waiting.request.expects_reply;
+  asked.own_exceptions = waiting.request.own_exceptions;
+  gateway_->asked(asked, reply.sent_at);
 }
 
 /// Has the echo of \p frame taken out where the adapter returns what it sends.
 void Line::expectEcho(const Request& request, const Bytes& frame)
 {
+  if (gateway_ || port_.isNetwork())
+  {
+    // A server may answer a broadcast by its own frame, and no adapter is on the way.
+    return;
+  }
   const bool reply_may_equal =
       !request.broadcast && protocol_.parse(frame.data(), frame.size(), &request).kind == Parsed::Kind::Reply;
   echo_.expect(frame, reply_may_equal);
@@ -222,7 +249,8 @@ Line::Waiting Line::startWaiting(const Request& request, TimePoint sent_at)
     waiting.reply_length = protocol_.replyLength(request);
     const double characters = static_cast<double>(waiting.reply_length) + REPLY_SLACK_CHARACTERS;
     waiting.first_byte_deadline += heldBack(request) + request.reply_delay + request.response_timeout;
-    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + REPLY_SLACK;
+    const Duration slack = std::max<Duration>(REPLY_SLACK, patience());
+    waiting.last_deadline = waiting.first_byte_deadline + timing_.characters(characters) + slack;
   }
   return waiting;
 }
@@ -257,7 +285,7 @@ TimePoint Line::waitUntil(const Waiting& waiting) const
   {
     return waiting.first_byte_deadline;
   }
-  const TimePoint rest = last_byte_at_ + timing_.patience(protocol_.gapCharacters());
+  const TimePoint rest = last_byte_at_ + patience();
   // A reply that broke off or was damaged will not come again; a few stray bytes say nothing about the reply yet.
   const bool echo_begun = !buffer_.empty() && echo_.holds(buffer_);
   const bool reply_was_here =
@@ -270,9 +298,15 @@ TimePoint Line::waitUntil(const Waiting& waiting) const
 ReceiveResult Line::receive(TimePoint deadline)
 {
   const bool was_empty = buffer_.empty();
+  const std::size_t before = buffer_.size();
   const ReceiveResult result = port_.receive(buffer_, deadline);
   if (result == ReceiveResult::Data)
   {
+    if (port_.isNetwork() && !gateway_)
+    {
+      telnet_.receive(buffer_, before);
+    }
+    behind_reply_ = behind_reply_ && clock_.now() <= last_byte_at_ + gap();
     last_byte_at_ = clock_.now();
     last_use_at_ = std::max(last_use_at_, last_byte_at_);
     ready_at_ = std::max(ready_at_, last_byte_at_ + gap());
@@ -281,107 +315,13 @@ ReceiveResult Line::receive(TimePoint deadline)
   return result;
 }
 
-bool Line::consume(Waiting& waiting, Reply& reply)
-{
-  stripEcho();
-  if (!waiting.first_byte_at && !buffer_.empty())
-  {
-    waiting.first_byte_at = last_byte_at_ - timing_.characters(static_cast<double>(buffer_.size()));
-  }
-  waiting.begun = false;
-  std::size_t before = 0;
-  while (!buffer_.empty() && buffer_.size() != before && (waiting.over || !echo_.holds(buffer_)))
-  {
-    before = buffer_.size();
-    if (consumeHead(waiting, reply))
-    {
-      return true;
-    }
-  }
-  if (buffer_.empty())
-  {
-    // It was noise, or somebody else's.
-    waiting.first_byte_at.reset();
-  }
-  return false;
-}
-
-bool Line::consumeHead(Waiting& waiting, Reply& reply)
-{
-  const Parsed parsed = protocol_.parse(buffer_.data(), buffer_.size(), &waiting.request);
-  switch (parsed.kind)
-  {
-    case Parsed::Kind::Incomplete:
-      waiting.begun = parsed.own;
-      skip(waiting.over ? 1 : 0);
-      return false;
-    case Parsed::Kind::Garbage:
-      skip(parsed.consumed);
-      return false;
-    case Parsed::Kind::Late:
-    case Parsed::Kind::Foreign:
-      waiting.foreign |= !noteUnasked(parsed, take(parsed.consumed));
-      return false;
-    case Parsed::Kind::Reply:
-    case Parsed::Kind::Exception:
-    case Parsed::Kind::NotUnderstood:
-      return answer(waiting, parsed, take(parsed.consumed), reply);
-  }
-  return false;
-}
-
-bool Line::answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply)
-{
-  const bool exception = parsed.kind != Parsed::Kind::Reply;
-  // An exception repeats neither address nor count: it could as well be the late answer to a lost request of this
-  // function. Refused here, for "never repeated" must not come from another request's reply.
-  if (exception && bars_.mayBeLate(protocol_.shapeOfReply(parsed), clock_.now()))
-  {
-    ++counters_.late_replies;
-    observe(FrameEvent::Kind::Late, raw, clock_.now());
-    return false;
-  }
-  accept(waiting, parsed, raw, reply);
-  return true;
-}
-
-void Line::accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply)
-{
-  echo_.answered(damaged_.empty());
-  reportDamaged();
-  noteAnswer(parsed, raw);
-  if (parsed.kind == Parsed::Kind::Reply && protocol_.isLoopback(waiting.request) && mayAsk(waiting.request))
-  {
-    bars_.lift(parsed.station, waiting.sent_at);
-  }
-  reply.outcome = outcomeOf(parsed);
-  reply.pdu = parsed.pdu;
-  reply.error_id = parsed.error_id;
-  reply.finished_at = last_byte_at_;
-  reply.turnaround = std::max(Duration{ 0 }, *waiting.first_byte_at - waiting.request_end);
-}
-
-void Line::noteAnswer(const Parsed& parsed, const Bytes& raw)
-{
-  const bool normal = parsed.kind == Parsed::Kind::Reply;
-  observe(normal ? FrameEvent::Kind::Reply : FrameEvent::Kind::Exception, raw, last_byte_at_);
-  switch (outcomeOf(parsed))
-  {
-    case Outcome::Damaged:
-      ++counters_.corrupt_replies;
-      return;
-    case Outcome::Timeout:
-      ++counters_.timeouts;
-      return;
-    default:
-      ++counters_.replies;
-      counters_.exceptions += normal ? 0 : 1;
-  }
-}
-
 void Line::giveUp(Waiting& waiting, Reply& reply)
 {
   reply.finished_at = clock_.now();
+  if (gateway_ && (waiting.request.broadcast || !waiting.request.expects_reply))
+  {
+    gateway_->givenUp(reply.finished_at);
+  }
   if (waiting.request.broadcast || !waiting.request.expects_reply)
   {
     // What the drive may still say is taken by the next settle().
@@ -399,114 +339,34 @@ void Line::giveUp(Waiting& waiting, Reply& reply)
   ++(damaged ? counters_.corrupt_replies : counters_.timeouts);
   reply.outcome = damaged ? Outcome::Damaged : Outcome::Timeout;
   reply.error_id = damaged ? ERROR_DAMAGED : ERROR_TIMEOUT;
-  bars_.add(waiting.shape, waiting.request.station, waiting.request_end, reply.finished_at);
+  if (gateway_)
+  {
+    gateway_->givenUp(reply.finished_at);
+    return;
+  }
+  bars_.add(waiting.shape, waiting.request.station, { waiting.request_end, reply.ticket }, reply.finished_at);
+}
+
+/// The port has said that it is gone.
+void Line::noteLoss()
+{
+  // What the other end said last may say why.
+  skip(buffer_.size());
+  reportDamaged();
+  last_loss_ = port_.lastLoss();
+  port_.close();
 }
 
 void Line::lose(Reply& reply)
 {
-  port_.close();
+  if (port_.isOpen())
+  {
+    noteLoss();
+  }
   reply.outcome = Outcome::PortLost;
   reply.error_id = ERROR_PORT_LOST;
   reply.finished_at = clock_.now();
 }
 
-void Line::consumeIdle()
-{
-  stripEcho();
-  std::size_t before = 0;
-  while (!buffer_.empty() && buffer_.size() != before && !echo_.holds(buffer_))
-  {
-    before = buffer_.size();
-    consumeIdleHead();
-  }
-}
-
-void Line::flushIdle()
-{
-  consumeIdle();
-  while (!buffer_.empty())
-  {
-    // Silence has ended what looked like the beginning of a frame.
-    skip(1);
-    consumeIdle();
-  }
-  reportDamaged();
-}
-
-void Line::consumeIdleHead()
-{
-  const Request* const request = silent_request_ ? &*silent_request_ : nullptr;
-  const Parsed parsed = protocol_.parse(buffer_.data(), buffer_.size(), request);
-  switch (parsed.kind)
-  {
-    case Parsed::Kind::Incomplete:
-      return;
-    case Parsed::Kind::Garbage:
-      skip(parsed.consumed);
-      return;
-    case Parsed::Kind::Late:
-    case Parsed::Kind::Foreign:
-      noteUnasked(parsed, take(parsed.consumed));
-      return;
-    case Parsed::Kind::Reply:
-    case Parsed::Kind::Exception:
-    case Parsed::Kind::NotUnderstood:
-      noteAnswer(parsed, take(parsed.consumed));
-      return;
-  }
-}
-
-void Line::stripEcho()
-{
-  counters_.echoes += echo_.strip(buffer_, damaged_) ? 1 : 0;
-}
-
-/// True if \p parsed is the late reply to a lost request, false if nobody here has asked for it.
-bool Line::noteUnasked(const Parsed& parsed, const Bytes& raw)
-{
-  const auto late = bars_.take(protocol_.shapeOfReply(parsed), clock_.now());
-  const bool own = late || parsed.kind == Parsed::Kind::Late;
-  observe(own ? FrameEvent::Kind::Late : FrameEvent::Kind::Foreign, raw, last_byte_at_);
-  ++(own ? counters_.late_replies : counters_.foreign_frames);
-  // No longer time-out makes a drive answer that a gateway has given up.
-  if (late && late->request_end && parsed.error_id != ERROR_TIMEOUT)
-  {
-    late_.push_back({ parsed.station, head_at_ - *late->request_end });
-  }
-  return own;
-}
-
-void Line::observe(FrameEvent::Kind kind, const Bytes& bytes, TimePoint time)
-{
-  if (observer_)
-  {
-    observer_({ kind, time, bytes });
-  }
-}
-
-void Line::reportDamaged()
-{
-  if (!damaged_.empty())
-  {
-    observe(FrameEvent::Kind::Damaged, damaged_, last_byte_at_);
-    damaged_.clear();
-  }
-}
-
-void Line::skip(std::size_t count)
-{
-  const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(count);
-  damaged_.insert(damaged_.end(), buffer_.begin(), end);
-  buffer_.erase(buffer_.begin(), end);
-}
-
-Bytes Line::take(std::size_t count)
-{
-  const auto end = buffer_.begin() + static_cast<std::ptrdiff_t>(count);
-  Bytes bytes(buffer_.begin(), end);
-  buffer_.erase(buffer_.begin(), end);
-  head_at_ = last_byte_at_;
-  return bytes;
-}
 }  // namespace wire
 }  // namespace inverter_bus

@@ -27,6 +27,11 @@ Duration Line::costUnanswered(const Request& request) const
   return timeToSend(request) + gap() + heldBack(request) + request.reply_delay + request.response_timeout;
 }
 
+Duration Line::patience() const
+{
+  return timing_.patience(protocol_.gapCharacters());
+}
+
 Duration Line::gap() const
 {
   return timing_.gap(protocol_.gapCharacters());

@@ -14,12 +14,23 @@ namespace
 /// for a timer to tell them from a pause inside a frame.
 constexpr unsigned FASTEST_COUNTED_BAUD_RATE = 19200;
 constexpr double FAST_CHARACTER_S = 0.0005;
+
+/// 16 ms of an FTDI adapter's latency timer, and some reserve.
+constexpr std::chrono::milliseconds ADAPTER_PAUSE{ 25 };
+/// The highest trigger level of a 16550A's FIFO, 14, and the 4 characters of silence after which it tells of less.
+constexpr double FIFO_CHARACTERS = 18.0;
 }  // namespace
 
-LineTiming::LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration delivery)
+LineTiming::LineTiming(unsigned baud_rate, unsigned bits_per_character)
+  : LineTiming(baud_rate, bits_per_character, ADAPTER_PAUSE)
+{
+  pause_ = std::max(pause_, characters(FIFO_CHARACTERS));
+}
+
+LineTiming::LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration pause)
   : character_s_(static_cast<double>(bits_per_character) / static_cast<double>(baud_rate))
   , fast_(baud_rate > FASTEST_COUNTED_BAUD_RATE)
-  , delivery_(delivery)
+  , pause_(pause)
 {
 }
 
@@ -35,7 +46,7 @@ Duration LineTiming::gap(double gap_characters) const
 
 Duration LineTiming::patience(double gap_characters) const
 {
-  return std::max(gap(gap_characters), delivery_);
+  return std::max(gap(gap_characters), pause_);
 }
 }  // namespace wire
 }  // namespace inverter_bus

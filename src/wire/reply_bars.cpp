@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/wire/reply_bars.h"
 
+#include <algorithm>
 #include <iterator>
 
 namespace inverter_bus
@@ -20,7 +21,7 @@ bool beginsWith(const std::string& text, const std::string& beginning)
 }
 }  // namespace
 
-void ReplyBars::add(const std::string& shape, std::uint8_t station, TimePoint request_end, TimePoint now)
+void ReplyBars::add(const std::string& shape, std::uint8_t station, const Lost& lost, TimePoint now)
 {
   forgetOld(now);
   Bar& bar = bars_[shape];
@@ -28,7 +29,7 @@ void ReplyBars::add(const std::string& shape, std::uint8_t station, TimePoint re
   bar.owed = bar.until > now ? bar.owed : 0;
   bar.station = station;
   bar.until = now + BAR_TIME;
-  bar.request_end = request_end;
+  bar.lost = lost;
   ++bar.owed;
 }
 
@@ -48,6 +49,11 @@ bool ReplyBars::mayBeLate(const std::string& shape, TimePoint now) const
   return bar != bars_.end() && beginsWith(bar->first, shape);
 }
 
+bool ReplyBars::owes(TimePoint now) const
+{
+  return std::any_of(bars_.begin(), bars_.end(), [now](const Bars::value_type& bar) { return bar.second.until > now; });
+}
+
 std::optional<ReplyBars::Late> ReplyBars::take(const std::string& shape, TimePoint now)
 {
   forgetOld(now);
@@ -61,7 +67,9 @@ std::optional<ReplyBars::Late> ReplyBars::take(const std::string& shape, TimePoi
   {
     return Late{};
   }
-  const Late late{ first->second.request_end };
+  Late late(first->second.lost);
+  // The last one's bar, but the answer may be that to the one before.
+  late->ticket = first->second.owed > 1 ? 0 : late->ticket;
   if (--first->second.owed == 0)
   {
     bars_.erase(first);
@@ -73,7 +81,7 @@ void ReplyBars::lift(std::uint8_t station, TimePoint time)
 {
   for (auto bar = bars_.begin(); bar != bars_.end();)
   {
-    const bool answered_since = bar->second.station == station && bar->second.request_end <= time;
+    const bool answered_since = bar->second.station == station && bar->second.lost.request_end <= time;
     bar = answered_since ? bars_.erase(bar) : std::next(bar);
   }
 }

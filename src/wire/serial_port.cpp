@@ -8,12 +8,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/serial_port.hpp>
-#include <boost/system/error_code.hpp>
 #include <cerrno>
-#include <cstring>
+#include <string>
 
+#include "open_failure.h"
 #include "poll_descriptor.h"
 #include "transmitter.h"
 #include "tty_setup.h"
@@ -32,7 +30,6 @@ class SerialPort : public Port
 public:
   explicit SerialPort(const SerialSettings& settings)
     : settings_(settings)
-    , port_(context_)
     , transmitter_(settings.transmission == Transmission::Modbus ? makeModbusTransmitter(settings)
                                                                  : makePlainTransmitter(settings))
   {
@@ -62,35 +59,31 @@ public:
       close();
       return OpenResult::NotThere;
     }
-    ::tcflush(port_.native_handle(), TCIOFLUSH);
+    if (locked_)
+    {
+      ::tcflush(tty_, TCIOFLUSH);
+    }
     return OpenResult::Opened;
   }
 
   void close() override
   {
-    if (!port_.is_open())
+    if (tty_ < 0)
     {
       return;
     }
     transmitter_->detach();
-    if (!pseudo_terminal_)
-    {
-      // A line that is stuck would hold up the close for half a minute. (On a pseudo-terminal this would take bytes
-      // from the other side that have long been sent.)
-      ::tcflush(port_.native_handle(), TCIOFLUSH);
-    }
     if (locked_)
     {
-      unlockTty(port_.native_handle(), pseudo_terminal_);
-      locked_ = false;
+      giveBack();
     }
-    boost::system::error_code ignored;
-    port_.close(ignored);
+    ::close(tty_);
+    tty_ = -1;
   }
 
   bool isOpen() const override
   {
-    return port_.is_open();
+    return tty_ >= 0;
   }
 
   std::string name() const override
@@ -100,14 +93,14 @@ public:
 
   bool send(const Bytes& frame) override
   {
-    return port_.is_open() && transmitter_->send(frame);
+    return tty_ >= 0 && transmitter_->send(frame);
   }
 
   ReceiveResult receive(Bytes& buffer, TimePoint deadline) override
   {
-    while (port_.is_open())
+    while (tty_ >= 0)
     {
-      const DescriptorState state = pollDescriptor(port_.native_handle(), POLLIN, deadline);
+      const DescriptorState state = pollDescriptor(tty_, POLLIN, deadline);
       if (state == DescriptorState::Silent)
       {
         return ReceiveResult::Silence;
@@ -130,62 +123,54 @@ public:
 private:
   OpenResult openAndLock(std::string& error)
   {
-    // Not by Asio: it would change the settings of a port that another process is using, before the lock is asked for.
-    const int tty = ::open(settings_.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (tty < 0)
+    tty_ = ::open(settings_.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (tty_ < 0)
     {
       const bool busy = errno == EBUSY;
-      error = busy ? inUse() : "cannot open " + settings_.device + ": " + std::strerror(errno);
+      error = busy ? inUse() : openFailure(settings_.device, errno);
       return busy ? OpenResult::InUse : OpenResult::NotThere;
     }
-    boost::system::error_code refused;
-    if (::isatty(tty) == 0)
+    if (::isatty(tty_) == 0)
     {
-      error = "cannot use " + settings_.device + ": " +
-              (errno == ENOTTY ? "it is not a serial port" : std::strerror(errno));
-      ::close(tty);
+      error = noSerialPort(settings_.device, errno);
       return OpenResult::NotThere;
     }
-    port_.assign(tty, refused);
-    if (refused)
-    {
-      error = "cannot use " + settings_.device + ": " + refused.message();
-      ::close(tty);
-      return OpenResult::NotThere;
-    }
-    return lock(error);
+    pseudo_terminal_ = isPseudoTerminal(tty_);
+    return settings_.exclusive ? lock(error) : OpenResult::Opened;
   }
 
   OpenResult lock(std::string& error)
   {
-    pseudo_terminal_ = isPseudoTerminal(port_.native_handle());
-    if (!settings_.exclusive)
-    {
-      return OpenResult::Opened;
-    }
-    locked_ = lockTty(port_.native_handle(), pseudo_terminal_);
+    const LockResult lock = lockTty(tty_, pseudo_terminal_);
+    locked_ = lock == LockResult::Taken;
     if (!locked_)
     {
-      error = inUse();
-      return OpenResult::InUse;
+      error = inUse() + (lock == LockResult::Exclusive
+                             ? " (exclusively, through another device file of the port or without a "
+                               "lock: a container?)"
+                             : "");
     }
-    return OpenResult::Opened;
+    return locked_ ? OpenResult::Opened : OpenResult::InUse;
+  }
+
+  /// Only who holds the lock flushes: whoever else is on the port has frames on their way.
+  void giveBack()
+  {
+    if (!pseudo_terminal_)
+    {
+      // A line that is stuck would hold up the close for half a minute. (On a pseudo-terminal this would take bytes
+      // from the other side that have long been sent.)
+      ::tcflush(tty_, TCIOFLUSH);
+    }
+    unlockTty(tty_, pseudo_terminal_);
+    locked_ = false;
   }
 
   /// Returns what went wrong; empty if nothing did.
   std::string configure()
   {
-    const int tty = port_.native_handle();
-    std::string reason = configureTty(port_, settings_, pseudo_terminal_);
-    if (!reason.empty())
-    {
-      return reason;
-    }
-    if (!pseudo_terminal_)
-    {
-      requestLowLatency(tty);
-    }
-    return switchTransmitter(tty);
+    const std::string reason = configureTty(tty_, settings_, pseudo_terminal_);
+    return reason.empty() ? switchTransmitter(tty_) : reason;
   }
 
   std::string switchTransmitter(int tty)
@@ -217,7 +202,7 @@ private:
   ssize_t readInto(Bytes& buffer) const
   {
     std::array<std::uint8_t, READ_SIZE> bytes;
-    const ssize_t count = ::read(port_.native_handle(), bytes.data(), bytes.size());
+    const ssize_t count = ::read(tty_, bytes.data(), bytes.size());
     if (count > 0)
     {
       buffer.insert(buffer.end(), bytes.begin(), bytes.begin() + count);
@@ -226,10 +211,8 @@ private:
   }
 
   SerialSettings settings_;
-  boost::asio::io_context context_;
-  // native_handle() is not const in Boost.Asio, though it changes nothing.
-  mutable boost::asio::serial_port port_;
   std::unique_ptr<Transmitter> transmitter_;
+  int tty_ = -1;
   bool pseudo_terminal_ = false;
   bool locked_ = false;
 };

@@ -9,9 +9,11 @@
 #include <sys/sysmacros.h>
 #include <termios.h>
 
-#include <boost/system/error_code.hpp>
 #include <cerrno>
 #include <cstring>
+
+#include "tty_attributes.h"
+#include "uart_rate.h"
 
 namespace inverter_bus
 {
@@ -23,77 +25,60 @@ namespace
 constexpr unsigned FIRST_PTS_MAJOR = 136;
 constexpr unsigned LAST_PTS_MAJOR = 143;
 
-using boost::asio::serial_port;
-using boost::asio::serial_port_base;
+/// The rate that is used in place of 38400, set by setserial's spd_hi to spd_cust.
+constexpr unsigned REPLACED_BAUD_RATE = 38400;
 
-serial_port_base::parity parityOption(Parity parity)
+/// Bytes go from the line to the reader and back: no modem, time receiver or joystick driver in between.
+bool usePlainDiscipline(int tty)
 {
-  switch (parity)
+  int discipline = N_TTY;
+  if (::ioctl(tty, TIOCGETD, &discipline) != 0 || discipline == N_TTY)
   {
-    case Parity::Even:
-      return serial_port_base::parity(serial_port_base::parity::even);
-    case Parity::Odd:
-      return serial_port_base::parity(serial_port_base::parity::odd);
-    case Parity::None:
-      break;
+    return true;
   }
-  return serial_port_base::parity(serial_port_base::parity::none);
+  discipline = N_TTY;
+  return ::ioctl(tty, TIOCSETD, &discipline) == 0;
 }
 
-serial_port_base::stop_bits stopBitsOption(unsigned stop_bits)
+/// No rate behind 38400, and no collecting of bytes before they are delivered. False if 38400 stays another rate; not
+/// every driver knows these flags, and nothing else depends on them.
+bool setDriverFlags(int tty)
 {
-  return serial_port_base::stop_bits(stop_bits == 2 ? serial_port_base::stop_bits::two
-                                                    : serial_port_base::stop_bits::one);
+  serial_struct information{};
+  constexpr int LOW_LATENCY = static_cast<int>(ASYNC_LOW_LATENCY);
+  constexpr int REPLACED_RATE = static_cast<int>(ASYNC_SPD_MASK);
+  if (::ioctl(tty, TIOCGSERIAL, &information) != 0)
+  {
+    return true;
+  }
+  const int wanted = (information.flags | LOW_LATENCY) & ~REPLACED_RATE;
+  if (information.flags != wanted)
+  {
+    information.flags = wanted;
+    ::ioctl(tty, TIOCSSERIAL, &information);
+  }
+  return ::ioctl(tty, TIOCGSERIAL, &information) != 0 || (information.flags & REPLACED_RATE) == 0;
 }
 
-/// Raw mode: every byte value passes both ways as it is, and a read returns what is there.
-void makeRaw(int tty)
+/// What only a real port has. Returns what was refused.
+std::string configureDriver(int tty, const SerialSettings& settings)
 {
-  termios attributes{};
-  if (::tcgetattr(tty, &attributes) != 0)
+  ::ioctl(tty, TIOCCBRK);
+  if (!usePlainDiscipline(tty))
   {
-    return;
+    return "another program has given it a line discipline that does not go away";
   }
-  ::cfmakeraw(&attributes);
-  attributes.c_iflag &= ~static_cast<tcflag_t>(IXOFF | IXANY | INPCK);
-  attributes.c_iflag |= IGNPAR;
-  attributes.c_cflag |= CREAD | CLOCAL;
-  // RTS keeps its level at the close, so that a transmitter which it switches stays off.
-  attributes.c_cflag &= ~static_cast<tcflag_t>(HUPCL);
-  // With 0 a read without data would return 0, which means hang-up here.
-  attributes.c_cc[VMIN] = 1;
-  attributes.c_cc[VTIME] = 0;
-  ::tcsetattr(tty, TCSANOW, &attributes);
+  if (!setDriverFlags(tty) && settings.baud_rate == REPLACED_BAUD_RATE)
+  {
+    return "it does not take the baud rate 38400: setserial has put another one in its place (spd_normal ends that)";
+  }
+  return "";
 }
 
-/// The driver may take a request and do something else without a word: compares what is set with what was asked for.
-std::string findDifference(int tty, const SerialSettings& settings)
+std::string judgeRateOf(const SerialSettings& settings, unsigned actual, const std::string& sysfs)
 {
-  termios actual{};
-  termios wanted{};
-  boost::system::error_code ignored;
-  if (::tcgetattr(tty, &actual) != 0)
-  {
-    return std::strerror(errno);
-  }
-  serial_port_base::baud_rate(settings.baud_rate).store(wanted, ignored);
-  serial_port_base::character_size(settings.data_bits).store(wanted, ignored);
-  parityOption(settings.parity).store(wanted, ignored);
-  stopBitsOption(settings.stop_bits).store(wanted, ignored);
-  const tcflag_t differing = actual.c_cflag ^ wanted.c_cflag;
-  if (::cfgetospeed(&actual) != ::cfgetospeed(&wanted))
-  {
-    return "it does not take the baud rate " + std::to_string(settings.baud_rate);
-  }
-  if ((differing & (PARENB | PARODD)) != 0)
-  {
-    return "it does not take the parity";
-  }
-  if ((differing & CSIZE) != 0)
-  {
-    return "it does not take " + std::to_string(settings.data_bits) + " data bits";
-  }
-  return (differing & CSTOPB) != 0 ? "it does not take " + std::to_string(settings.stop_bits) + " stop bits" : "";
+  const auto clock = uartClock(settings.device, sysfs);
+  return clock ? judgeUartRate(*clock, settings.baud_rate, actual) : judgeRate(settings.baud_rate, actual);
 }
 }  // namespace
 
@@ -108,19 +93,28 @@ bool isPseudoTerminal(int tty)
   return number >= FIRST_PTS_MAJOR && number <= LAST_PTS_MAJOR;
 }
 
-bool lockTty(int tty, bool pseudo_terminal)
+LockResult lockTty(int tty, bool pseudo_terminal)
 {
-  // The lock lies on the device itself, whatever link it was opened through.
+  // The lock lies on the device file, whatever link it was opened through.
   if (::flock(tty, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
   {
-    return false;
+    return LockResult::Locked;
   }
-  if (!pseudo_terminal)
+  if (pseudo_terminal)
   {
-    // Keeps out programs that know no flock.
-    ::ioctl(tty, TIOCEXCL);
+    return LockResult::Taken;
   }
-  return true;
+  // Root passes TIOCEXCL, and in containers everybody is root. It stays set when its owner is killed for as long as any
+  // other process has the port open: then the port is in use, too.
+  int exclusive = 0;
+  if (::ioctl(tty, TIOCGEXCL, &exclusive) == 0 && exclusive != 0)
+  {
+    ::flock(tty, LOCK_UN);
+    return LockResult::Exclusive;
+  }
+  // Keeps out programs that know no flock.
+  ::ioctl(tty, TIOCEXCL);
+  return LockResult::Taken;
 }
 
 void unlockTty(int tty, bool pseudo_terminal)
@@ -132,24 +126,21 @@ void unlockTty(int tty, bool pseudo_terminal)
   ::flock(tty, LOCK_UN);
 }
 
-std::string configureTty(serial_port& port, const SerialSettings& settings, bool pseudo_terminal)
+std::string configureTty(int tty, const SerialSettings& settings, bool pseudo_terminal, const std::string& sysfs)
 {
-  const int tty = port.native_handle();
-  makeRaw(tty);
-  boost::system::error_code refused;
-  port.set_option(serial_port_base::baud_rate(settings.baud_rate), refused);
-  if (refused)
+  const std::string reason = pseudo_terminal ? "" : configureDriver(tty, settings);
+  if (!reason.empty())
   {
-    return "it does not take the baud rate " + std::to_string(settings.baud_rate);
+    return reason;
   }
-  // One by one, and judged together at the end by what has been taken over: a driver that refuses one of them may be
-  // content when the others are set.
-  port.set_option(serial_port_base::flow_control(serial_port_base::flow_control::none), refused);
-  port.set_option(serial_port_base::character_size(settings.data_bits), refused);
-  port.set_option(parityOption(settings.parity), refused);
-  port.set_option(stopBitsOption(settings.stop_bits), refused);
-  // A pseudo-terminal has no bits on a wire: it drops parity and 7 data bits, and glibc then reports EINVAL.
-  return pseudo_terminal ? "" : findDifference(tty, settings);
+  // Output that another program has stopped (XOFF) would never leave.
+  ::tcflow(tty, TCOON);
+  const TtyAttributes attributes = setTtyAttributes(tty, settings, pseudo_terminal);
+  if (!attributes.refused.empty() || pseudo_terminal)
+  {
+    return attributes.refused;
+  }
+  return judgeRateOf(settings, attributes.baud_rate, sysfs);
 }
 
 std::string enableKernelRs485(int tty)
@@ -172,17 +163,6 @@ bool hasRts(int tty)
 {
   int lines = 0;
   return ::ioctl(tty, TIOCMGET, &lines) == 0;
-}
-
-void requestLowLatency(int tty)
-{
-  serial_struct information{};
-  constexpr int LOW_LATENCY = static_cast<int>(ASYNC_LOW_LATENCY);
-  if (::ioctl(tty, TIOCGSERIAL, &information) == 0 && (information.flags & LOW_LATENCY) == 0)
-  {
-    information.flags |= LOW_LATENCY;
-    ::ioctl(tty, TIOCSSERIAL, &information);
-  }
 }
 }  // namespace wire
 }  // namespace inverter_bus

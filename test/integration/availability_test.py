@@ -170,7 +170,7 @@ class Availability(unittest.TestCase):
         rospy.set_param('/second_driver', self.bench.parameters)
         try:
             second = self.bench.start('inverter_bus_node', '__name:=second_driver')
-            self.assertEqual(second.wait(40.0), 1, second.log())
+            self.assertEqual(second.wait(60.0), 1, second.log())
             self.assertIn('in use', second.log())
             self.assertIn(self.bench.link, second.log())
         finally:

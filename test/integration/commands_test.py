@@ -84,7 +84,7 @@ class Commands(unittest.TestCase):
         belt = self.bench['belt_1']
         belt.send(15.0)
         belt.wait(lambda s: abs(s.velocity - 15.0) < 0.05, 'at 15')
-        for velocity in (float('nan'), float('inf'), float('-inf'), 1e6, -1e6, 0.001):
+        for velocity in (float('nan'), float('inf'), float('-inf'), 1e6, -1e6):
             self.assertRefused(belt, velocity)
             belt.send(15.0)
             belt.wait(lambda s: s.error_id == 0, 'the next accepted command clears the error')
@@ -92,11 +92,13 @@ class Commands(unittest.TestCase):
 
     def testTheUsersOwnLimitsHold(self):
         belt = self.bench['belt_2']
-        for velocity in (2.001, -2.001, 0.09):
+        for velocity in (2.001, -2.001):
             self.assertRefused(belt, velocity)
         self.assertFalse(self.bench.turns('belt_2'))
         belt.send(2.0)
         belt.wait(lambda s: abs(s.velocity - 2.0) < 0.01, 'at the limit itself')
+        belt.send(0.09)
+        belt.wait(lambda s: not s.run_command and s.error_id == 0, 'stopped by what is below the minimum')
 
     def testAnEqualCommandSendsNothing(self):
         belt = self.bench['belt_1']

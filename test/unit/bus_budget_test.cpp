@@ -7,7 +7,7 @@
 //   registers 1001h-1004h: 8 characters there, 13 back: 21 * 0.5208 + 2 * 1.823 + 5 = 19.583 ms  together 36.563 ms
 //   slow reads, once a second each: 11.458 + 20.833 + 11.458 = 43.750 ms, with the drive's wait 58.750 ms
 //   a cycle with them in proportion: 36.563 / (1 - 0.04375) = 38.24 ms, with the drive's wait 38.85 ms
-//   longest exchange: 13 characters of a frequency, 2 gaps, 5 ms and 100 ms of silence = 115.417 ms
+//   longest exchange: 33 characters, 2 gaps, 5 ms, 100 ms of silence and a pause of 25 ms in the reply = 150.833 ms
 //   a stop after it: gap and 8 characters = 5.990 ms, with a gap behind it 7.813 ms
 
 #include "inverter_bus/bus/budget.h"
@@ -39,7 +39,12 @@ class Planned
 public:
   explicit Planned(std::size_t inverters, unsigned baud_rate = 19200, unsigned bits = 10,
                    const drive::Drive& drive = shipped("omron_mx2"))
-    : protocol_(wire::makeModbusRtu()), line_(port_, *protocol_, clock_, wire::LineTiming(baud_rate, bits))
+    : Planned(inverters, wire::LineTiming(baud_rate, bits), drive)
+  {
+  }
+
+  Planned(std::size_t inverters, const wire::LineTiming& timing, const drive::Drive& drive = shipped("omron_mx2"))
+    : protocol_(wire::makeModbusRtu()), line_(port_, *protocol_, clock_, timing)
   {
     for (std::size_t index = 0; index < inverters; ++index)
     {
@@ -111,20 +116,32 @@ TEST(Budget, cycleAbove19200BaudWithTheFixedGap)
 
 TEST(Budget, longestExchangeIsTheReadOfTenRegistersWhoseReplyBeginsAtTheLastMoment)
 {
-  // 8 + 25 characters 17.188, two gaps 3.646, the drive's wait 5, the response time-out 100.
-  EXPECT_NEAR(ms(Planned(1).budget.longestExchange()), 125.833, 0.01);
+  // 8 + 25 characters 17.188, two gaps 3.646, the drive's wait 5, the response time-out 100, a pause in the reply 25.
+  EXPECT_NEAR(ms(Planned(1).budget.longestExchange()), 150.833, 0.01);
 }
 
 TEST(Budget, longestExchangeHasTheLongestResponseTimeoutOfTheBus)
 {
   Planned bus(3);
   bus.configuration.bus.inverters[1].response_timeout = 0.5;
-  EXPECT_NEAR(ms(bus.budget.longestExchange()), 525.833, 0.01);
+  EXPECT_NEAR(ms(bus.budget.longestExchange()), 550.833, 0.01);
 }
 
 TEST(Budget, worstStopIsTheLongestExchangeAndTheStopsOwnFrame)
 {
-  EXPECT_THAT(ms(Planned(1).budget.worstStop()), AllOf(testing::Ge(131.82), testing::Le(133.66)));
+  EXPECT_THAT(ms(Planned(1).budget.worstStop()), AllOf(testing::Ge(156.82), testing::Le(158.66)));
+}
+
+TEST(Budget, worstStopContainsThePauseThatIsAllowedForInAReply)
+{
+  // At 2400 8N1 18 characters take 75 ms. A character takes 4.167 ms and the gap 14.583: 33 characters 137.5, two gaps
+  // 29.167, 5, 100, and 75 of pause make 346.667; the stop's frame is a gap and 8 characters, 47.917, or a gap more.
+  EXPECT_THAT(ms(Planned(1, 2400).budget.worstStop()), AllOf(testing::Ge(394.5), testing::Le(409.2)));
+  // The default at 19200 8N1 is 25 ms.
+  const double raised = 0.3;
+  EXPECT_NEAR(ms(Planned(1, wire::LineTiming(19200, 10, seconds(raised))).budget.worstStop()) -
+                  ms(Planned(1).budget.worstStop()),
+              (raised - 0.025) * 1e3, 0.01);
 }
 
 TEST(Budget, worstStopDoesNotDependOnTheNumberOfInverters)
@@ -136,30 +153,30 @@ TEST(Budget, worstStopDoesNotDependOnTheInterval)
 {
   Planned bus(1);
   bus.configuration.bus.interval = 600.0;
-  EXPECT_THAT(ms(bus.budget.worstStop()), testing::Le(133.66));
+  EXPECT_THAT(ms(bus.budget.worstStop()), testing::Le(158.66));
 }
 
 TEST(Budget, longestGapIsACycleWithAVelocityBeforeEachReadAndALostExchange)
 {
-  // A velocity: 21 characters, then twice 16, six gaps, three waits of 5 = 53.54. 38.24 + 2 * 53.54 + 125.83 = 271.2.
-  EXPECT_THAT(ms(Planned(1).budget.longestGap()), AllOf(testing::Ge(271.1), testing::Le(271.9)));
+  // A velocity: 21 characters, then twice 16, six gaps, three waits of 5 = 53.54. 38.24 + 2 * 53.54 + 150.83 = 296.2.
+  EXPECT_THAT(ms(Planned(1).budget.longestGap()), AllOf(testing::Ge(296.1), testing::Le(296.9)));
 }
 
 TEST(Budget, longestGapContainsTheInterval)
 {
   Planned bus(1);
   bus.configuration.bus.interval = 0.5;
-  EXPECT_THAT(ms(bus.budget.longestGap()), AllOf(testing::Ge(771.1), testing::Le(771.9)));
+  EXPECT_THAT(ms(bus.budget.longestGap()), AllOf(testing::Ge(796.1), testing::Le(796.9)));
 }
 
 TEST(Budget, printsTheThreeFiguresInOneLine)
 {
   const std::vector<std::string> lines = Planned(1).texts(Level::Ok);
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_THAT(lines.front(), AllOf(HasSubstr("cycle 38."), HasSubstr("stop latency 13"),
+  EXPECT_THAT(lines.front(), AllOf(HasSubstr("cycle 38."), HasSubstr("stop latency 15"),
                                    HasSubstr("gap between two "
                                              "frames"),
-                                   HasSubstr("271.")));
+                                   HasSubstr("296.")));
 }
 
 TEST(Budget, warnsOfNothingOnASmallBus)
@@ -184,9 +201,9 @@ TEST(Budget, warnsOfNoCommandTimeoutThatIsOff)
 
 TEST(Budget, warnsOfADriveTimeoutThatCannotBeMet)
 {
-  // A velocity 53.54, a read of 4 registers 19.58 and the longest exchange 125.83: 198.96.
+  // A velocity 53.54, a read of 4 registers 19.58 and the longest exchange 150.83: 223.96.
   const Planned bus(1);
-  EXPECT_FALSE(bus.budget.judgeDriveTimeout("belt", Ms(200)));
+  EXPECT_FALSE(bus.budget.judgeDriveTimeout("belt", Ms(225)));
   const auto finding = bus.budget.judgeDriveTimeout("belt", Ms(150));
   ASSERT_TRUE(finding);
   EXPECT_EQ(finding->level, Level::Warn);

@@ -407,9 +407,31 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "releaseOnExit", entry("release_on_exit: 0"), { BELT, "'release_on_exit'", "true, false" } },
         Wrong{ "overridesList", entry("overrides: [1]"), { BELT, "'overrides'", "[1]", ALLOWED } },
         Wrong{ "unknownOverride", entry("overrides: {no_such_key: 1}"), { BELT, "no_such_key" } },
+        Wrong{ "skipText", entry("skip: torque"), { BELT, "'skip'", ALLOWED } },
+        Wrong{ "skipNumber", entry("skip: [1]"), { BELT, "'skip'", ALLOWED } },
+        Wrong{ "skipUnknown", entry("skip: [torque, torqe]"), { BELT, "'skip'", "'torqe'", "no field", "dc_voltage" } },
+        Wrong{ "skipVelocity", entry("skip: [velocity]"), { BELT, "'skip'", "'velocity'", "dc_voltage" } },
+        Wrong{ "skipRun", entry("skip: [run_seen]"), { BELT, "'skip'", "'run_seen'", "can't do without", "torque" } },
+        Wrong{ "skipFault", entry("skip: [faulted]"), { BELT, "'skip'", "'faulted'", "can't do without", "torque" } },
+        Wrong{ "skipCode", entry("skip: [fault_code]"), { BELT, "'skip'", "'fault_code'", "can't do without" } },
+        Wrong{ "skipFrequency", entry("skip: [output_frequency]"), { BELT, "'skip'", "'output_frequency'" } },
+        Wrong{ "skipInDefaults",
+               "defaults: {skip: [direction]}\n" + ONE,
+               { "~defaults", "'skip'", "'direction'", "can't do without" } },
         Wrong{ "confirmNumber", entry("confirm: [1]"), { BELT, "'confirm'", "[1]", ALLOWED } },
         Wrong{ "unknownConfirm", entry("confirm: [no_such_item]"), { BELT, "confirm", "no_such_item" } }),
     [](const testing::TestParamInfo<Wrong>& info) { return info.param.name; });
+
+TEST(ConfigurationTest, skippedFieldsReachTheDrive)
+{
+  const Configuration configuration = read(
+      "defaults: {skip: [dc_voltage]}\nscan_list:\n"
+      "  - {name: a, node: 1, drive: toshiba_vfs15}\n"
+      "  - {name: b, node: 2, drive: toshiba_vfs15, skip: []}\n");
+  EXPECT_EQ(std::vector<std::string>{ "dc_voltage" }, configuration.bus.inverters[0].skip);
+  EXPECT_TRUE(configuration.drives[0].unconfirmedText().empty());
+  EXPECT_FALSE(configuration.drives[1].unconfirmedText().empty());
+}
 
 TEST(ConfigurationTest, aFileWithoutAMapIsRefused)
 {

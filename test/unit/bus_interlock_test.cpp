@@ -59,6 +59,20 @@ public:
     interlock.zeroed(at(time), from);
   }
 
+  void nearZero(int time, const Publisher& from = publisher())
+  {
+    interlock.nearlyZeroed(at(time), from);
+  }
+
+  /// Near zero every \p spacing ms from \p from until before \p end.
+  void nearZeros(int from, int end, int spacing, const Publisher& who = publisher())
+  {
+    for (int time = from; time < end; time += spacing)
+    {
+      nearZero(time, who);
+    }
+  }
+
   /// Commands every \p spacing ms from \p from until before \p end; returns how many were granted.
   int stream(int from, int end, int spacing, const Publisher& who = publisher())
   {
@@ -606,6 +620,120 @@ TEST(Interlock, streamsThatGoOnStayRefusedHoweverManyTheyAre)
   }
   EXPECT_EQ(belt.command(5100, publisher("/new")), Permission::Locked);
   EXPECT_EQ(belt.command(5600, publisher("/newer")), Permission::Granted);
+}
+
+// --- near zero (8.5) -------------------------------------------------------------------------------------------------
+
+TEST(Interlock, aVelocityNearZeroDoesNotUnlock)
+{
+  Guarded belt;
+  belt.interlock.online(at(0));
+  belt.command(10);
+  belt.nearZero(20);
+  EXPECT_EQ(belt.command(30), Permission::Locked);
+}
+
+TEST(Interlock, nearZeroForAsLongAsSilenceUnlocks)
+{
+  Running belt;
+  belt.stream(1100, 2000, 100);
+  belt.stopAndConfirm(2000);
+  EXPECT_EQ(belt.command(2050), Permission::Locked);
+  belt.nearZeros(2100, 2550, 50);
+  EXPECT_TRUE(belt.interlock.locked(at(2549)));
+  EXPECT_EQ(belt.interlock.judge(at(2549), publisher()), Permission::Locked);
+  EXPECT_FALSE(belt.interlock.locked(at(2550)));
+  EXPECT_EQ(belt.command(2550), Permission::Granted);
+}
+
+TEST(Interlock, nearZeroFromTheStartIsSilence)
+{
+  Guarded belt;
+  belt.nearZeros(-1000, 500, 50);
+  belt.interlock.online(at(0));
+  EXPECT_EQ(belt.interlock.judge(at(499), publisher()), Permission::Locked);
+  EXPECT_EQ(belt.command(500), Permission::Granted);
+}
+
+TEST(Interlock, nearZeroBetweenCommandsMakesNoFastPublisherOfASlowOne)
+{
+  Running belt;
+  belt.stream(2000, 5000, 1000);
+  belt.stopAndConfirm(4500);
+  // A command every second, and twenty a second that are near zero: twice the spacing of the commands is never silent.
+  for (int second = 5; second < 60; ++second)
+  {
+    EXPECT_EQ(belt.command(second * 1000), Permission::Locked) << second;
+    belt.nearZeros(second * 1000 + 50, second * 1000 + 1000, 50);
+  }
+}
+
+TEST(Interlock, aStreamThatGoesThroughZeroStaysLocked)
+{
+  Running belt;
+  belt.stopAndConfirm(1500);
+  for (int time = 1600; time < 20000; time += 400)
+  {
+    EXPECT_EQ(belt.stream(time, time + 100, 50), 0) << time;
+    belt.nearZeros(time + 100, time + 400, 50);
+  }
+}
+
+TEST(Interlock, nearZeroTakesNoNeutralAway)
+{
+  Running belt;
+  belt.stopAndConfirm(1500);
+  belt.zero(1600);
+  belt.nearZero(1650);
+  EXPECT_EQ(belt.command(1700), Permission::Granted);
+}
+
+TEST(Interlock, nearZeroLocksNobodyOut)
+{
+  Running belt;
+  belt.nearZeros(1100, 1200, 50);
+  EXPECT_FALSE(belt.interlock.locked(at(1200)));
+  EXPECT_EQ(belt.command(1200), Permission::Granted);
+}
+
+TEST(Interlock, nearZeroLeavesNothingToTheDeadMan)
+{
+  Running belt;
+  belt.nearZero(1100);
+  EXPECT_FALSE(belt.interlock.deadManDue(at(60000)));
+  EXPECT_EQ(belt.interlock.activePublishers(at(1200)), 0U);
+}
+
+TEST(Interlock, aPublisherThatOnlySentNearZeroNeedsNoLongerSilence)
+{
+  Guarded belt(1.0);
+  belt.interlock.online(at(0));
+  belt.nearZeros(0, 1000, 100);
+  EXPECT_EQ(belt.command(1000), Permission::Granted);
+  belt.stopAndConfirm(2000);
+  // One command is no spacing: the longest of command_timeout and 0.5 s, not the 5 s of a publisher that is rarely heard.
+  EXPECT_EQ(belt.interlock.judge(at(3000), publisher()), Permission::Granted);
+}
+
+TEST(Interlock, aLatchedVelocityOfOneThatWasHeardNearZeroIsARepeat)
+{
+  Guarded belt;
+  belt.interlock.online(at(0));
+  belt.nearZero(100, publisher("/latch"));
+  EXPECT_EQ(belt.command(5000, latched("/latch")), Permission::Repeat);
+}
+
+TEST(Interlock, manyNamesThatAreNearZeroForgetNoStreamThatGoesOn)
+{
+  Running belt;
+  belt.stopAndConfirm(1500);
+  EXPECT_EQ(belt.command(1550), Permission::Locked);
+  for (int number = 0; number < 100; ++number)
+  {
+    belt.nearZero(1600 + number, publisher("/n" + std::to_string(number)));
+  }
+  // It was forgotten among them, so that whoever is new may be this one.
+  EXPECT_EQ(belt.command(2040), Permission::Locked);
 }
 }  // namespace
 }  // namespace bus

@@ -224,6 +224,56 @@ TEST(ResetJob, rxReadsItsTripFromTheStatusRegister)
   EXPECT_TRUE(job.answer().success);
 }
 
+/// An RX that was reset, up to the read that shows whether the trip is gone.
+class RxReset : public testing::Test
+{
+protected:
+  RxReset()
+  {
+    frame(job_);
+    job_.done(RUN_IS_OFF);
+    frame(job_);
+    job_.done(RESET_ON_DONE);
+    frame(job_);
+    job_.done(RESET_OFF_DONE);
+    EXPECT_EQ(frame(job_), "03 03 00 03 00 01");
+  }
+
+  const drive::Drive rx_ = shipped("omron_rx");
+  ResetJob job_{ rx_, 3, 7 };
+};
+
+TEST_F(RxReset, anUnknownStateThatIsGoneIsSaid)
+{
+  EXPECT_EQ(job_.done(reply("03 02 00 00")), Progress::Done);
+  EXPECT_TRUE(job_.answer().success);
+  EXPECT_EQ(job_.answer().message, "reset sent: the unknown state 7 is gone");
+}
+
+TEST_F(RxReset, anUnknownStateThatStaysIsNoSuccess)
+{
+  EXPECT_EQ(job_.done(reply("03 02 00 07")), Progress::GoesOn);
+  EXPECT_FALSE(job_.answer().success);
+  EXPECT_NE(job_.answer().error_id, 0);
+  EXPECT_THAT(job_.answer().message, HasSubstr("unknown state 7"));
+}
+
+TEST_F(RxReset, aDriveThatNeverTellsItsStateIsUnknown)
+{
+  EXPECT_EQ(job_.done(exception(0x83, 0x02)), Progress::Done);
+  EXPECT_TRUE(job_.answer().success) << "the reset itself was taken";
+  EXPECT_THAT(job_.answer().message, HasSubstr("unknown"));
+}
+
+TEST_F(RxReset, oneThatIsBusyIsAskedAgain)
+{
+  EXPECT_EQ(job_.done(exception(0x83, 0x06)), Progress::GoesOn);
+  EXPECT_FALSE(job_.answer().success);
+  EXPECT_EQ(frame(job_), "03 03 00 03 00 01");
+  EXPECT_EQ(job_.done(reply("03 02 00 00")), Progress::Done);
+  EXPECT_TRUE(job_.answer().success);
+}
+
 // --- trip memory -----------------------------------------------------------------------------------------------------
 
 const wire::Reply NO_TRIP = reply("03 14 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00");

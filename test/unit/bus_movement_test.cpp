@@ -357,16 +357,6 @@ TEST_F(Mx2Movement, refusesVelocitiesBeyondTheMaximumInBothDirections)
   EXPECT_EQ(movement_.judge(1e300).error_id, 0xA000);
 }
 
-TEST_F(Mx2Movement, refusesVelocitiesBelowTheMinimumButNeverZero)
-{
-  config_.min_velocity = 5.0;
-  EXPECT_EQ(movement_.judge(5.0).error_id, 0);
-  EXPECT_EQ(movement_.judge(4.999).error_id, 0xA000);
-  EXPECT_EQ(movement_.judge(-4.999).error_id, 0xA000);
-  EXPECT_EQ(movement_.judge(0.0).error_id, 0);
-  EXPECT_EQ(movement_.judge(-0.0).error_id, 0);
-}
-
 TEST_F(Mx2Movement, zeroOfEitherSignTakesRunOff)
 {
   EXPECT_TRUE(movement_.judge(0.0).target.zero);
@@ -374,13 +364,22 @@ TEST_F(Mx2Movement, zeroOfEitherSignTakesRunOff)
   EXPECT_FALSE(movement_.judge(1.0).target.zero);
 }
 
-TEST_F(Mx2Movement, refusesCommandsThatRoundToZeroHertz)
+TEST_F(Mx2Movement, whatRoundsToZeroHertzTakesRunOff)
 {
-  EXPECT_EQ(movement_.judge(0.004).error_id, 0xA000);
-  EXPECT_EQ(movement_.judge(-0.004).error_id, 0xA000);
-  EXPECT_EQ(movement_.judge(std::numeric_limits<double>::denorm_min()).error_id, 0xA000);
-  EXPECT_EQ(movement_.judge(0.006).error_id, 0);
-  EXPECT_THAT(movement_.judge(0.004).text, AllOf(HasSubstr("0 Hz"), HasSubstr("0.01 Hz")));
+  command(50.0);
+  EXPECT_THAT(command(5.185908126537075e-14), ElementsAre(RUN_OFF));
+  EXPECT_TRUE(movement_.judge(0.004).target.near_zero);
+  EXPECT_FALSE(movement_.judge(0.0).target.near_zero);
+}
+
+TEST_F(Mx2Movement, takesTheClampedVelocityForItsTarget)
+{
+  config_.limit = Limit::Saturate;
+  EXPECT_THAT(command(80.0), ElementsAre(FREQUENCY_50_HZ, FORWARD, RUN_ON));
+  EXPECT_EQ(movement_.target()->velocity, 50.0);
+  // Another value beyond the maximum is the same command.
+  EXPECT_THAT(command(1e300), IsEmpty());
+  EXPECT_FALSE(movement_.active());
 }
 
 TEST_F(Mx2Movement, roundsTheSetPointToTheNearestCount)

@@ -21,7 +21,11 @@ using testing::Pair;
 
 VelocityGroup resolved(const std::vector<std::string>& names, const std::vector<double>& velocities)
 {
-  return resolveGroup(names, velocities, { { "left", 0 }, { "right", 1 }, { "lift", 2 } });
+  // What is near zero differs from one inverter to another: here "lift" stops below 0.5.
+  const auto stops = [](std::size_t inverter, double velocity) {
+    return velocity == 0.0 || (inverter == 2 && velocity < 0.5 && velocity > -0.5);
+  };
+  return resolveGroup(names, velocities, { { "left", 0 }, { "right", 1 }, { "lift", 2 } }, stops);
 }
 
 TEST(VelocityGroupTest, namesBecomeIndices)
@@ -52,6 +56,18 @@ TEST(VelocityGroupTest, aNameThatStandsTwiceRefusesAllButItsZero)
   const VelocityGroup group = resolved({ "left", "left", "right" }, { 1.0, 0.0, 2.0 });
   EXPECT_THAT(group.problem, HasSubstr("'left' twice"));
   EXPECT_THAT(group.targets, ElementsAre(Pair(0U, 0.0)));
+}
+
+TEST(VelocityGroupTest, whatIsNearZeroOfARefusedGroupStops)
+{
+  const VelocityGroup group = resolved({ "left", "middle", "lift" }, { 0.3, 1.0, 0.3 });
+  EXPECT_THAT(group.problem, HasSubstr("'middle'"));
+  EXPECT_THAT(group.targets, ElementsAre(Pair(2U, 0.3)));
+}
+
+TEST(VelocityGroupTest, anExactZeroGoesBeforeOneThatIsNearIt)
+{
+  EXPECT_THAT(resolved({ "lift", "lift" }, { 0.3, 0.0 }).targets, ElementsAre(Pair(2U, 0.0)));
 }
 
 TEST(VelocityGroupTest, aMillionNamesMakeOneShortSentence)

@@ -124,8 +124,7 @@ TEST_F(BadInput, velocitiesThatAreNoNumbers)
   bus_.run(0.2);
   ASSERT_TRUE(bus_.status(BELT).run_command);
   bus_.clearFrames();
-  for (const double value :
-       { NOT_A_NUMBER, INFINITE, -INFINITE, 1e300, -1e300, 50.1, std::numeric_limits<double>::denorm_min(), 1e-9 })
+  for (const double value : { NOT_A_NUMBER, INFINITE, -INFINITE, 1e300, -1e300, 50.1 })
   {
     EXPECT_EQ(bus::ERROR_OUT_OF_RANGE, bus_.command(BELT, value)) << value;
     EXPECT_EQ(bus::ERROR_OUT_OF_RANGE, bus_.group({ { PUMP, 10.0 }, { BELT, value } })) << value;

@@ -102,6 +102,31 @@ TEST(Toshiba, saysWhyItsBlocksAreNotUsed)
   EXPECT_THAT(bus.diagnostics(0), HasSubstr("configure_block: true"));
 }
 
+std::string wellSet(const std::string& more)
+{
+  return "port: /dev/virtual\nbaud_rate: 19200\nparity: even\nscan_list:\n"
+         "  - {name: pump, node: 1, drive: toshiba_vfs15" +
+         more +
+         "}\n"
+         "simulation:\n"
+         "  pump: {parameters: {F803: 5, F804: 2, F870: 1, F871: 3, F875: 1, F876: 2, F877: 3, F878: 4, F879: 14}}\n";
+}
+
+TEST(Toshiba, aWellSetDriveIsGreenOnceWhatNobodyNeedsIsSkipped)
+{
+  VirtualBus yellow(wellSet(""));
+  settle(yellow);
+  EXPECT_THAT(yellow.diagnostics(0), HasSubstr("dc_voltage_base"));
+  VirtualBus green(wellSet(", skip: [dc_voltage, torque]"));
+  settle(green);
+  EXPECT_EQ("", green.findings(0));
+  green.run(5.0);
+  EXPECT_EQ(0U, green.count(READ_SLOW)) << "the torque is read in spite of skip";
+  EXPECT_FALSE(green.status(0).monitor.torque.has_value());
+  EXPECT_FALSE(green.status(0).monitor.dc_voltage.has_value());
+  EXPECT_TRUE(green.status(0).monitor.output_frequency.has_value());
+}
+
 TEST(Toshiba, percentBecomesAmpereAndVoltByTheDrivesOwnRating)
 {
   VirtualBus bus(DIRECT);

@@ -111,6 +111,29 @@ TEST(DriveOverrides, ACoilReplacesARegisterAsAWhole)
   EXPECT_EQ(drive.profile().status.at("faulted").space, Space::Coil);
 }
 
+TEST(DriveOverrides, AnotherWayToReadAWordReplacesTheOldOne)
+{
+  const Item nonzero =
+      shipped("omron_rx", overrides("status: {faulted: {nonzero: true}}")).profile().status.at("faulted");
+  EXPECT_TRUE(nonzero.nonzero);
+  EXPECT_TRUE(nonzero.values.empty());
+  EXPECT_EQ(nonzero.number, 0x0004);
+  const Item bit = shipped("omron_rx", overrides("status: {faulted: {bit: 1}}")).profile().status.at("faulted");
+  EXPECT_EQ(bit.bit, 1U);
+  EXPECT_TRUE(bit.values.empty());
+  const Item values = shipped("toshiba_vfs15", overrides("status: {faulted: {register: 0xFC90, values: {0: 0, 1: 1}}}"))
+                          .profile()
+                          .status.at("faulted");
+  EXPECT_FALSE(values.bit.has_value());
+  EXPECT_EQ(values.values.size(), 2U);
+}
+
+TEST(DriveOverrides, OneMoreValueIsAddedToTheOthers)
+{
+  const Drive drive = shipped("omron_rx", overrides("status: {faulted: {values: {7: 1}}}"));
+  EXPECT_EQ(drive.profile().status.at("faulted").values.size(), 4U);
+}
+
 TEST(DriveOverrides, AListReplacesASequenceThatIsUnconfirmed)
 {
   const ProfileFile file(openProfile(""));

@@ -107,6 +107,32 @@ TEST(DriveStatus, ATripOfAnRxShowsInStatusB)
   EXPECT_FALSE(decoded(drive, block, "03 02 00 03").faulted.has_value());
 }
 
+TEST(DriveStatus, AStateThatStandsInNoTableCountsAsATrip)
+{
+  const Drive drive = shipped("omron_rx");
+  const ReadBlock& block = drive.fastBlocks()[1];
+  const Monitor monitor = decoded(drive, block, "03 02 00 07");
+  EXPECT_FALSE(monitor.faulted.has_value());
+  EXPECT_THAT(monitor.unknown_trip, Optional(Eq(7U)));
+  EXPECT_THAT(monitor.tripped(), Optional(true));
+  EXPECT_FALSE(decoded(drive, block, "03 02 00 01").unknown_trip.has_value());
+  EXPECT_THAT(decoded(drive, block, "03 02 00 01").tripped(), Optional(false));
+  EXPECT_FALSE(Monitor().tripped().has_value()) << "what was not read is no trip";
+}
+
+TEST(DriveStatus, AnUnknownStateIsNamedWithTheReasonOfTheTrip)
+{
+  const Drive drive = shipped("omron_mx2");
+  Monitor monitor;
+  monitor.faulted = true;
+  EXPECT_EQ(drive.tripText(monitor), "trip 0: no reason given");
+  monitor.faulted.reset();
+  monitor.unknown_trip = 300;
+  EXPECT_THAT(drive.tripText(monitor), testing::StartsWith("unknown state 300 (0x012C) of faulted"));
+  monitor.fault_code = 12;
+  EXPECT_THAT(drive.tripText(monitor), testing::EndsWith("trip 12: " + drive.faultText(12)));
+}
+
 TEST(DriveStatus, TheCurrentOfAnRxIsUnknownUntilItsScaleIsConfirmed)
 {
   const Drive careful = shipped("omron_rx");
@@ -159,6 +185,18 @@ TEST(DriveStatus, ABitOfARegisterIsAFlag)
   EXPECT_THAT(decodedWord("faulted: {register: 0x0100, bit: 1}", "03 02 00 02").faulted, Optional(true));
   EXPECT_THAT(decodedWord("faulted: {register: 0x0100, bit: 1}", "03 02 FF FD").faulted, Optional(false));
   EXPECT_THAT(decodedWord("faulted: {register: 0x0100, bit: 15}", "03 02 80 00").faulted, Optional(true));
+}
+
+TEST(DriveStatus, AFlagThatIsNotZeroKnowsEveryValue)
+{
+  const std::string error = "faulted: {register: 0x0100, nonzero: true}";
+  EXPECT_THAT(decodedWord(error, "03 02 00 00").faulted, Optional(false));
+  EXPECT_THAT(decodedWord(error, "03 02 00 01").faulted, Optional(true));
+  EXPECT_THAT(decodedWord(error, "03 02 FF FF").faulted, Optional(true));
+  EXPECT_FALSE(decodedWord(error, "03 02 FF FF").unknown_trip.has_value());
+  const std::string masked = "faulted: {register: 0x0100, mask: 0x00FF, nonzero: true}";
+  EXPECT_THAT(decodedWord(masked, "03 02 FF 00").faulted, Optional(false));
+  EXPECT_THAT(decodedWord(masked, "03 02 FF 10").faulted, Optional(true));
 }
 
 TEST(DriveStatus, BitsThatTheMaskLeavesOutDoNotCount)

@@ -21,6 +21,7 @@
 #include "inverter_bus/bus/bus_loop.h"
 #include "inverter_bus/bus/coordinator.h"
 #include "inverter_bus/simulation/simulated_bus.h"
+#include "virtual_gateway.h"
 #include "virtual_world.h"
 
 namespace inverter_bus
@@ -32,9 +33,9 @@ public:
   explicit VirtualBus(const std::string& yaml, simulation::GapRule gap = simulation::GapRule::ENFORCE)
     : simulated_(simulation::busConfigFromText(yaml), lineOptions(gap), clock_.now())
     , configuration_(read(yaml))
-    , port_(simulated_, clock_)
+    , port_(makePort())
     , protocol_(bus::makeProtocol(configuration_.bus))
-    , line_(port_, *protocol_, clock_, bus::makeTiming(configuration_.bus))
+    , line_(*port_, *protocol_, clock_, bus::makeTiming(configuration_.bus))
     , coordinator_(configuration_, line_)
     , loop_(coordinator_, line_, clock_, mutex_)
   {
@@ -156,6 +157,17 @@ public:
     const Box box = std::make_shared<std::optional<bus::Answer>>();
     coordinator_.writeParameter(clock_.now(), index, name, value, persist, into(box));
     return box;
+  }
+
+  /// What makes the inverter's lamp yellow or red; empty: it is green.
+  std::string findings(std::size_t index)
+  {
+    std::string text;
+    for (const bus::Finding& finding : coordinator_.report(clock_.now()).inverters.at(index).findings)
+    {
+      text += finding.text + "\n";
+    }
+    return text;
   }
 
   /// All lines of /diagnostics about one inverter, findings and values.
@@ -300,6 +312,17 @@ public:
     return configuration_;
   }
 
+  /// Where the scan list's port is tcp://.
+  VirtualGateway& gateway()
+  {
+    return dynamic_cast<VirtualGateway&>(*port_);
+  }
+
+  const std::vector<bus::BusStatus>& busStatuses() const
+  {
+    return bus_statuses_;
+  }
+
   const wire::Line& line() const
   {
     return line_;
@@ -322,9 +345,20 @@ private:
     return bus::readConfiguration(value, "scan list", INVERTER_BUS_ROOT "/config/drives");
   }
 
+  std::unique_ptr<wire::Port> makePort()
+  {
+    if (!configuration_.bus.modbus_tcp)
+    {
+      return std::make_unique<VirtualPort>(simulated_, clock_);
+    }
+    const double gap = 3.5 * wire::bitsPerCharacter(configuration_.bus.serial) / configuration_.bus.serial.baud_rate;
+    return std::make_unique<VirtualGateway>(simulated_, clock_, gap);
+  }
+
   void deliver()
   {
     const bus::Outputs outputs = coordinator_.takeOutputs();
+    bus_statuses_.insert(bus_statuses_.end(), outputs.bus_statuses.begin(), outputs.bus_statuses.end());
     for (const bus::InverterStatus& status : outputs.statuses)
     {
       statuses_[status.index] = status;
@@ -342,7 +376,7 @@ private:
   AppointedClock clock_;
   simulation::SimulatedBus simulated_;
   bus::Configuration configuration_;
-  VirtualPort port_;
+  std::unique_ptr<wire::Port> port_;
   std::unique_ptr<wire::Protocol> protocol_;
   wire::Line line_;
   std::mutex mutex_;
@@ -351,6 +385,7 @@ private:
   std::map<std::size_t, bus::InverterStatus> statuses_;
   std::vector<simulation::FrameRecord> frames_;
   std::vector<std::string> log_;
+  std::vector<bus::BusStatus> bus_statuses_;
 };
 }  // namespace inverter_bus
 

@@ -66,6 +66,7 @@ TEST_F(LineLateReply, itIsMeasured)
   ASSERT_EQ(1u, late.size());
   EXPECT_EQ(1, late[0].station);
   EXPECT_EQ(ms(150) - timing_.characters(8), late[0].delay);
+  EXPECT_EQ(1u, late[0].ticket);
   EXPECT_TRUE(line_.takeLateReplies().empty());
 }
 

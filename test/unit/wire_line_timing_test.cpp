@@ -40,11 +40,27 @@ TEST(LineTiming, theGapIsFixedAbove19200Baud)
   EXPECT_EQ(microseconds(1750), rounded(LineTiming(115200, 10).gap(3.5)));
 }
 
-TEST(LineTiming, aFrameIsGivenUpAfterTheLongerOfGapAndDelivery)
+TEST(LineTiming, aReplyMayPauseFor25Milliseconds)
 {
   EXPECT_EQ(microseconds(25000), rounded(LineTiming(19200, 10).patience(3.5)));
-  EXPECT_EQ(microseconds(32083), rounded(LineTiming(1200, 11).patience(3.5)));
+  EXPECT_EQ(microseconds(25000), rounded(LineTiming(115200, 12).patience(3.5)));
+  EXPECT_EQ(microseconds(25000), rounded(LineTiming(9600, 11).patience(0.0)));
+}
+
+TEST(LineTiming, aReplyMayPauseFor18CharactersAtLowRates)
+{
+  // 14 of a FIFO's trigger level and 4 of silence.
+  EXPECT_EQ(microseconds(41250), rounded(LineTiming(4800, 11).patience(3.5)));
+  EXPECT_EQ(microseconds(75000), rounded(LineTiming(2400, 10).patience(3.5)));
+  EXPECT_EQ(microseconds(82500), rounded(LineTiming(2400, 11).patience(0.0)));
+  EXPECT_EQ(microseconds(165000), rounded(LineTiming(1200, 11).patience(3.5)));
+}
+
+TEST(LineTiming, aPauseThatIsGivenIsWaitedForAndNoLessThanAGap)
+{
   EXPECT_EQ(microseconds(200000), rounded(LineTiming(19200, 10, milliseconds(200)).patience(3.5)));
+  EXPECT_EQ(microseconds(100000), rounded(LineTiming(1200, 11, milliseconds(100)).patience(3.5)));
+  EXPECT_EQ(microseconds(32083), rounded(LineTiming(1200, 11, milliseconds(10)).patience(3.5)));
 }
 
 TEST(SteadyClock, sleepsUntilThenAndNotLonger)

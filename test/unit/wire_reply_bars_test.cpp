@@ -18,7 +18,7 @@ class ReplyBarsTest : public testing::Test
 protected:
   void lose(const std::string& shape, std::uint8_t station = 1)
   {
-    bars_.add(shape, station, now_ - milliseconds(100), now_);
+    bars_.add(shape, station, { now_ - milliseconds(100), ++ticket_ }, now_);
   }
 
   bool barred(const std::string& shape) const
@@ -28,6 +28,7 @@ protected:
 
   ReplyBars bars_;
   TimePoint now_ = TimePoint() + std::chrono::hours(1);
+  std::uint64_t ticket_ = 0;
 };
 
 TEST_F(ReplyBarsTest, aLostRequestBarsItsShapeForOneSecond)
@@ -46,8 +47,9 @@ TEST_F(ReplyBarsTest, theLateReplyLiftsTheBar)
 {
   lose("read");
   const auto late = bars_.take("read", now_);
-  ASSERT_TRUE(late && late->request_end);
-  EXPECT_EQ(now_ - milliseconds(100), *late->request_end);
+  ASSERT_TRUE(late && *late);
+  EXPECT_EQ(now_ - milliseconds(100), (*late)->request_end);
+  EXPECT_EQ(ticket_, (*late)->ticket);
   EXPECT_FALSE(barred("read"));
   EXPECT_FALSE(bars_.take("read", now_));
 }
@@ -108,7 +110,7 @@ TEST_F(ReplyBarsTest, aBeginningThatOneShapeHasIsThatShape)
   EXPECT_TRUE(bars_.mayBeLate("A", now_));
   const auto late = bars_.take("A", now_);
   ASSERT_TRUE(late);
-  EXPECT_TRUE(late->request_end);
+  EXPECT_TRUE(*late);
   EXPECT_FALSE(barred("A1"));
 }
 
@@ -118,7 +120,7 @@ TEST_F(ReplyBarsTest, aBeginningThatSeveralShapesHaveLiftsNone)
   lose("A2");
   const auto late = bars_.take("A", now_);
   ASSERT_TRUE(late);
-  EXPECT_FALSE(late->request_end);
+  EXPECT_FALSE(*late);
   EXPECT_TRUE(barred("A1"));
   EXPECT_TRUE(barred("A2"));
 }

@@ -60,7 +60,7 @@ protected:
 
 TEST_F(TtyLock, aRealPortIsLockedTwice)
 {
-  ASSERT_TRUE(lockTty(first_, false));
+  ASSERT_EQ(LockResult::Taken, lockTty(first_, false));
   EXPECT_EQ(1, exclusive(second_));
   EXPECT_NE(0, ::flock(second_, LOCK_EX | LOCK_NB));
   EXPECT_EQ(EWOULDBLOCK, errno);
@@ -68,11 +68,11 @@ TEST_F(TtyLock, aRealPortIsLockedTwice)
 
 TEST_F(TtyLock, nobodyButRootOpensAnExclusivePort)
 {
-  ASSERT_TRUE(lockTty(first_, false));
+  ASSERT_EQ(LockResult::Taken, lockTty(first_, false));
   if (::geteuid() == 0)
   {
     // Root passes TIOCEXCL: what stops a second node of root's is the flock.
-    EXPECT_FALSE(lockTty(second_, false));
+    EXPECT_EQ(LockResult::Locked, lockTty(second_, false));
     return;
   }
   EXPECT_LT(openDevice(), 0);
@@ -81,25 +81,45 @@ TEST_F(TtyLock, nobodyButRootOpensAnExclusivePort)
 
 TEST_F(TtyLock, aPseudoTerminalHasTheFlockOnly)
 {
-  ASSERT_TRUE(lockTty(first_, true));
+  ASSERT_EQ(LockResult::Taken, lockTty(first_, true));
   EXPECT_EQ(0, exclusive(second_));
-  EXPECT_FALSE(lockTty(second_, true));
+  EXPECT_EQ(LockResult::Locked, lockTty(second_, true));
 }
 
 TEST_F(TtyLock, whoeverFindsItLockedLeavesTheLockAlone)
 {
-  ASSERT_TRUE(lockTty(first_, false));
-  EXPECT_FALSE(lockTty(second_, false));
+  ASSERT_EQ(LockResult::Taken, lockTty(first_, false));
+  EXPECT_EQ(LockResult::Locked, lockTty(second_, false));
   EXPECT_EQ(1, exclusive(first_));
-  EXPECT_FALSE(lockTty(second_, false));
+  EXPECT_EQ(LockResult::Locked, lockTty(second_, false));
+}
+
+TEST_F(TtyLock, aPortThatIsExclusiveIsInUseWhoeverSeesWhichLock)
+{
+  // As through another device file of the same port: nobody holds the lock that is seen here.
+  ASSERT_EQ(0, ::ioctl(first_, TIOCEXCL));
+  EXPECT_EQ(LockResult::Exclusive, lockTty(second_, false));
+  EXPECT_EQ(1, exclusive(first_)) << "it is the owner's";
+  // The lock was given back: it would refuse the owner's own next open.
+  EXPECT_EQ(0, ::flock(first_, LOCK_EX | LOCK_NB));
+}
+
+TEST_F(TtyLock, whatAKilledOwnerLeavesEndsWithTheLastThatHasThePortOpen)
+{
+  ASSERT_EQ(LockResult::Taken, lockTty(first_, false));
+  ::close(first_);
+  first_ = -1;
+  EXPECT_EQ(LockResult::Exclusive, lockTty(second_, false));
+  ASSERT_EQ(0, ::ioctl(second_, TIOCNXCL));
+  EXPECT_EQ(LockResult::Taken, lockTty(second_, false));
 }
 
 TEST_F(TtyLock, unlockingEndsBoth)
 {
-  ASSERT_TRUE(lockTty(first_, false));
+  ASSERT_EQ(LockResult::Taken, lockTty(first_, false));
   unlockTty(first_, false);
   EXPECT_EQ(0, exclusive(second_));
-  EXPECT_TRUE(lockTty(second_, false));
+  EXPECT_EQ(LockResult::Taken, lockTty(second_, false));
 }
 }  // namespace
 }  // namespace wire

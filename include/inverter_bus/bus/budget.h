@@ -41,7 +41,7 @@ public:
   /// How long a drive whose own time-out comes near may have to wait for its turn all the same: an exchange in flight, a
   /// velocity for all inverters under way, and every other drive's turn before it.
   Duration deadlineMargin() const;
-  /// The longest exchange in use: its reply begins when its time is almost up.
+  /// The longest exchange in use: its reply begins when its time is almost up, and has a pause in it.
   Duration longestExchange() const;
   Figures figures() const;
 
@@ -57,6 +57,7 @@ private:
   Duration refreshCost(std::size_t index) const;
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
+  std::string behindGateway() const;
 
   const Configuration& configuration_;
   const wire::Line& line_;

@@ -43,7 +43,7 @@ public:
   /// Starts the bus thread. Opens the port; goes on trying while it is missing.
   void start();
 
-  /// True when the port was in use by another process for 15 s after start(): end with status 1.
+  /// True when the port was in use by another process for 30 s after start(): end with status 1.
   bool portInUse() const;
 
   /// Stops every motor that may run, waits for the confirmations within the contract's bound (at most 10 s), closes the
@@ -51,9 +51,13 @@ public:
   /// confirmed; empty: all stopped. A second call does nothing.
   std::vector<std::string> shutdown();
 
-  /// A velocity command for one or several inverters: all accepted or none (zeros always). The verdict shows in status.
+  /// A velocity command for one or several inverters: all accepted or none (what stops(), always). The verdict shows in
+  /// the status and in the log.
   /// Returns the error id of a refused command, else 0.
   std::uint16_t command(const VelocityCommand& command);
+
+  /// \p velocity takes the RUN of inverter \p index off and is never refused: 0, or near it. Any thread, no lock.
+  bool stops(std::size_t index, double velocity) const;
 
   /// A velocity command that could not even be turned into targets (unequal lengths, unknown or repeated names): shows
   /// \p error_id and \p text in the status of \p indices (may be empty) and, with \p group, in that of the bus. It feeds

@@ -22,19 +22,23 @@ public:
 
   /// One round, at most one exchange. Returns the time of the next round at the latest; in the past: at once.
   TimePoint step();
-  /// The port was in use by another process from the start, for 15 s.
+  /// The port was in use by another process from the start, for 30 s.
   bool portInUse() const;
   void close();
 
 private:
   TimePoint openPort();
-  void lose();
+  TimePoint noteOpening(wire::OpenResult result, const std::string& error);
+  bool reopen();
+  void judgePatience(TimePoint now, bool in_use);
 
   Coordinator& coordinator_;
   wire::Line& line_;
   wire::Clock& clock_;
   std::mutex& mutex_;
   TimePoint next_open_;
+  /// An attempt to open the port is under way.
+  bool opening_ = false;
   std::optional<TimePoint> in_use_since_;
   bool ever_opened_ = false;
   bool given_up_ = false;

@@ -12,9 +12,13 @@
 
 #include "inverter_bus/bus/budget.h"
 #include "inverter_bus/bus/bus.h"
+#include "inverter_bus/bus/connection_watch.h"
+#include "inverter_bus/bus/gateway_queue.h"
 #include "inverter_bus/bus/inverter.h"
 #include "inverter_bus/bus/jobs.h"
+#include "inverter_bus/bus/link_watch.h"
 #include "inverter_bus/bus/load_meter.h"
+#include "inverter_bus/bus/refusal_log.h"
 #include "inverter_bus/bus/scheduler.h"
 
 namespace inverter_bus
@@ -45,6 +49,8 @@ public:
 
   // --- requests of users --------------------------------------------------------------------------------------------
   std::uint16_t command(TimePoint now, const VelocityCommand& command);
+  /// \p velocity takes the RUN of this inverter off: 0, or near it. Depends on the configuration alone; any thread.
+  bool stops(std::size_t index, double velocity) const;
   /// A malformed command: shows in the status of \p indices and, for a group, in the bus status.
   void refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text,
               bool group);
@@ -79,7 +85,23 @@ public:
   void portOpened(TimePoint now);
   /// \p in_use: another process holds it.
   void portMissing(TimePoint now, const std::string& error, bool in_use);
+  /// It is being opened, which takes a while.
+  void portPending(TimePoint now);
   void portLost(TimePoint now);
+  /// settle() found it gone: closed by its other end, or lost.
+  void portClosed(TimePoint now);
+  /// The next connection is not to be tried before this time.
+  TimePoint openNotBefore() const;
+  /// A connection that its other end closed is being opened again at once; motors run on.
+  bool resuming() const;
+  /// The link is mute and is to be opened anew (renewing(), then abandon and open).
+  bool renewalDue(TimePoint now) const;
+  void renewing(TimePoint now);
+  /// It is opened anew for any other reason of ours: motors run on.
+  void reopening(TimePoint now);
+  /// It leads to a telnet server, and everything that may be sent to one was: close it (closedForTelnet()).
+  bool telnetOver(TimePoint now) const;
+  void closedForTelnet(TimePoint now);
 
   void beginShutdown(TimePoint now);
   /// All motors confirmed, or the time is up.
@@ -120,6 +142,8 @@ private:
     bool loopback = false;
     /// A stop's write that a late reply to an earlier request could answer.
     bool may_be_late = false;
+    /// A velocity's frame that may set RUN or raise the frequency.
+    bool moves = false;
     Write write;
     CommandId job = 0;
   };
@@ -145,6 +169,7 @@ private:
   // velocity
   std::uint16_t judgeGroup(TimePoint now, const VelocityCommand& command, std::vector<JudgedVelocity>& judged,
                            bool& repeat);
+  double factorOf(const VelocityCommand& command) const;
   std::uint16_t judgeOne(TimePoint now, std::size_t index, const Publisher& publisher, JudgedVelocity& judged) const;
   void applyVelocities(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
                        bool refused);
@@ -153,7 +178,8 @@ private:
 
   void noteGroupError(TimePoint now, std::uint16_t error_id);
   void clearGroupError(TimePoint now, bool by_group);
-  void logGroupRefusal(TimePoint now, const std::string& text);
+  void tellRefusal(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
+                   std::uint16_t error_id);
 
   // stops
   void requestStop(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
@@ -178,6 +204,28 @@ private:
   void answer(const AnswerCallback& callback, const Answer& answer);
   void refuseCall(const AnswerCallback& callback, std::uint16_t error_id, const std::string& message);
 
+  // the way to the drives
+  GatewayRisk riskOf(const Current& current) const;
+  void noteGateway(const Current& current, const wire::Reply& reply);
+  void noteConnection(TimePoint now, const Current& current, const wire::Reply& reply);
+  void noteLink(const wire::Reply& reply);
+  Gate gate(TimePoint now);
+  Duration probePrice(const Current& current, const wire::Reply& reply) const;
+  TimePoint stopNotBefore(TimePoint now, const Inverter& inverter) const;
+  void stopInsteadOfZeros(TimePoint now);
+  bool zeroNeedsStop(TimePoint now, const Inverter& inverter) const;
+  Duration worstStop() const;
+  std::optional<Finding> gatewayFinding() const;
+  std::optional<Finding> quirkFinding() const;
+  std::vector<std::size_t> onlineInverters() const;
+  bool resumes(TimePoint now, std::optional<std::size_t> index);
+  void loseEverybody(TimePoint now, std::uint16_t error_id);
+  std::optional<Pick> pickCheck(TimePoint now, Gate& gate);
+  void portFails(TimePoint now, const std::string& error);
+  Pick pick(TimePoint now);
+  bool untested(const Inverter& inverter) const;
+  bool mustWait(TimePoint now, const Current& current);
+
   // loop
   void watchDeadMen(TimePoint now);
   void expireJobs(TimePoint now);
@@ -185,6 +233,7 @@ private:
   std::vector<InverterView> views(TimePoint now) const;
   std::optional<Current> composeBroadcast();
   bool releaseDue(const Inverter& inverter) const;
+  TimePoint nextStop(TimePoint now) const;
   void noteStopLatency(Duration latency);
   Duration longestReplyDelay() const;
   Pick pickShutdown(TimePoint now);
@@ -200,9 +249,12 @@ private:
   Duration probeTimeout(const Inverter& inverter) const;
   TimePoint earliestDeadMan(TimePoint wake) const;
 
+  void ended(const Current& current, const wire::Reply& reply);
   void finishExchange(const Current& current, const wire::Reply& reply, bool more);
   void doneStop(const Current& current, const wire::Reply& reply);
   void doneVelocity(const Current& current, const wire::Reply& reply);
+  void failVelocity(const Current& current, const wire::Reply& reply, bool too_many_lost);
+  void writesLost(TimePoint now, Inverter& inverter);
   void countWear(const Current& current);
   void noteBlockRefusal(const Current& current, const wire::Reply& reply);
   void configureBlock(TimePoint now, Inverter& inverter);
@@ -215,6 +267,7 @@ private:
   bool repeat(int& tries, const wire::Reply& reply) const;
   void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void judgeRefresh(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);
@@ -229,6 +282,15 @@ private:
   std::vector<std::unique_ptr<Inverter>> inverters_;
   std::unique_ptr<Scheduler> scheduler_;
   LoadMeter meter_;
+  GatewayQueue gateway_;
+  ConnectionWatch connection_;
+  LinkWatch link_;
+  /// The exchange that has just ended was not answered, and says nothing: an older request was unanswered.
+  bool behind_another_ = false;
+  /// To whom the last request went, if it was not answered.
+  std::optional<std::size_t> last_unanswered_;
+  std::size_t resumed_ = 0;
+  std::optional<TimePoint> resumed_logged_at_;
 
   std::optional<Current> current_;
   std::map<CommandId, RunningJob> jobs_;
@@ -250,8 +312,7 @@ private:
   std::uint16_t last_error_ = 0;
   std::uint16_t group_error_ = 0;
   TimePoint group_error_at_;
-  std::optional<TimePoint> group_logged_at_;
-  std::size_t groups_not_logged_ = 0;
+  RefusalLog refusals_;
   std::uint8_t last_node_ = 0;
   wire::LineCounters counters_;
   bool echo_found_ = false;
@@ -259,6 +320,7 @@ private:
 
   TimePoint last_bus_status_;
   std::uint64_t published_cycle_ = 0;
+  bool published_connected_ = false;
   std::vector<TimePoint> last_published_;
 
   bool shutting_down_ = false;
@@ -268,6 +330,8 @@ private:
   std::vector<bool> shutdown_tried_;
   std::vector<bool> released_;
   bool broadcast_due_ = false;
+  /// The last exchange was one.
+  bool broadcast_last_ = false;
   TimePoint broadcast_requested_;
 
   Outputs outputs_;

@@ -61,6 +61,9 @@ public:
   void commanded(TimePoint now, const Publisher& publisher, bool accepted);
   /// Books a velocity of 0: neutral for this publisher.
   void zeroed(TimePoint now, const Publisher& publisher);
+  /// Books a velocity near 0: for the lock as if nothing had come, so that it neither ends a silence nor is a return to
+  /// neutral; for the dead man as a 0.
+  void nearlyZeroed(TimePoint now, const Publisher& publisher);
   /// No RUN of ours is in force any more: nothing for the dead man to watch.
   void resting();
 
@@ -81,7 +84,10 @@ public:
 private:
   struct Stream
   {
-    TimePoint last;
+    /// The last message that breaks a silence; nothing: none has come yet.
+    std::optional<TimePoint> last;
+    /// The last message of any kind.
+    TimePoint heard;
     std::array<Duration, 3> spacings{};
     std::size_t next_spacing = 0;
     bool neutral = false;
@@ -92,12 +98,13 @@ private:
   bool open() const;
   bool silent(TimePoint now, const Stream* stream) const;
   const Stream* find(const std::string& name) const;
+  Stream& hear(TimePoint now, const Publisher& publisher);
   Stream& book(TimePoint now, const Publisher& publisher);
   void lock();
 
   Duration command_timeout_;
   std::map<std::string, Stream> streams_;
-  /// The last command of any publisher that is not in streams_ any more.
+  /// The last message of any publisher that is not in streams_ any more.
   TimePoint forgotten_last_;
   unsigned generation_ = 1;
   bool released_ = false;

@@ -12,6 +12,7 @@
 
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
 #include "inverter_bus/bus/scheduler.h"
@@ -83,7 +84,7 @@ private:
 class Inverter
 {
 public:
-  Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after);
+  Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after, int retries);
 
   // --- parts ------------------------------------------------------------------------------------------------------
   const std::size_t index;
@@ -96,17 +97,23 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  LostWrites lost_writes;
 
   // --- link -------------------------------------------------------------------------------------------------------
   /// A valid reply came. Returns true if the inverter was offline or unknown before.
   bool answered(const wire::Reply& reply);
-  /// An exchange failed after its repeats. Returns true if the inverter has just gone offline.
-  bool failed(TimePoint now, std::uint16_t error_id);
+  /// An exchange failed after its repeats. Returns true if the inverter has just gone offline. Lost writes of command words
+  /// alone don't take it offline (contract, 8.1): a read must have been lost among them.
+  bool failed(TimePoint now, std::uint16_t error_id, bool write = false);
   /// The port is gone, or the inverter is given up: offline at once.
   void goOffline(std::uint16_t error_id);
   bool offline() const;
+  /// Only writes were lost, and so many that a read has to tell whether the drive is away.
+  bool needsRead() const;
   /// A complete status has come since start or return.
   bool known() const;
+  /// A complete status has come since the node was started.
+  bool everKnown() const;
   /// It answers again, but no complete status has come yet: to users it is still away.
   bool unreadSinceReturn() const;
   /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
@@ -163,6 +170,11 @@ public:
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
   void acceptCommand();
+  /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
+  /// would hide it.
+  void velocityFailed(std::uint16_t error_id, const std::string& text);
+  /// One was confirmed, or a 0 came.
+  void velocityConfirmed();
   void noteExchangeError(std::uint16_t error_id);
 
   bool reset_active = false;
@@ -173,19 +185,19 @@ public:
   /// Its settings are not asked for before that.
   TimePoint setting_not_before;
   int refresh_tries = 0;
-  int velocity_tries = 0;
   /// Frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
   unsigned velocity_frames = 0;
   int settings_tries = 0;
   unsigned probes = 0;
 
 private:
+  void showError(InverterStatus& status) const;
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
   std::string blockFinding() const;
   std::vector<int> wantedWriteCodes() const;
-  void judgeRestart(const drive::Monitor& monitor, Judgement& judgement);
+  void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
@@ -193,11 +205,15 @@ private:
 
   int offline_after_;
   bool known_ = false;  ///< a complete status has come since start or return
+  bool ever_known_ = false;
   bool offline_ = false;
   int failures_ = 0;
+  bool read_failed_ = false;  ///< among these failures
   std::uint16_t exchange_error_ = 0;
   std::uint16_t command_error_ = 0;
   std::string command_error_text_;
+  std::uint16_t velocity_error_ = 0;
+  std::string velocity_error_text_;
   TimePoint last_reply_;
   bool ever_answered_ = false;
   TimePoint silence_until_;
@@ -222,6 +238,8 @@ private:
   std::optional<TimePoint> run_shown_at_;
   /// The drive's own copy of our RUN command was read as on since the last lost exchange.
   bool run_proven_ = false;
+  /// By then the drive had not restarted.
+  TimePoint no_restart_until_;
   double last_shown_hz_ = 0.0;
   bool block_configured_ = false;
   std::string block_note_;

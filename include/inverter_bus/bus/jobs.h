@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -70,7 +71,8 @@ private:
 class ResetJob : public Job
 {
 public:
-  ResetJob(const drive::Drive& drive, std::uint8_t station);
+  /// \p unknown_trip the drive's state where the profile does not know it, see drive::Monitor.
+  ResetJob(const drive::Drive& drive, std::uint8_t station, std::optional<std::uint32_t> unknown_trip = std::nullopt);
   wire::Request next() override;
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
@@ -89,7 +91,12 @@ private:
   const drive::ReadBlock& verifyBlock() const;
   Progress afterStep();
   Progress afterRestartCheck(const wire::Reply& reply);
+  Progress afterRunCheck(const wire::Reply& reply);
+  Progress verify(const wire::Reply& reply);
+  Progress refused(const wire::Reply& reply);
+  Progress notTold();
 
+  const std::optional<std::uint32_t> unknown_trip_;
   Phase phase_;
   std::size_t step_ = 0;
   bool run_was_on_ = false;

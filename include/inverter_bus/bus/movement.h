@@ -11,6 +11,7 @@
 
 #include "inverter_bus/bus/configuration.h"
 #include "inverter_bus/bus/types.h"
+#include "inverter_bus/bus/velocity_range.h"
 
 namespace inverter_bus
 {
@@ -19,12 +20,14 @@ namespace bus
 /// What an accepted velocity command wants of the drive.
 struct Target
 {
-  /// A command of 0: RUN off, nothing else.
+  /// A command of 0 or near it: RUN off, nothing else.
   bool zero = false;
+  /// Not exactly 0: for the lock no return to neutral, but silence (contract, 8.5).
+  bool near_zero = false;
   bool reverse = false;
   /// Set-point in counts of the drive.
   std::uint32_t counts = 0;
-  /// As commanded, in the user's unit.
+  /// In the user's unit, after clamping.
   double velocity = 0.0;
 };
 
@@ -56,8 +59,10 @@ class Movement
 public:
   Movement(const drive::Drive& drive, const InverterConfig& config);
 
-  /// Range and arming (A000, B004, B006); no state.
-  JudgedVelocity judge(double velocity) const;
+  /// Range and arming (A000, B004, B006); no state. \p factor of the whole command, see VelocityRange.
+  JudgedVelocity judge(double velocity, double factor = 1.0) const;
+  /// What may be commanded at all.
+  const VelocityRange& range() const;
 
   void aim(const Target& target);
   /// Drops the target: a stop, a fault, the inverter offline.
@@ -108,6 +113,7 @@ private:
 
   const drive::Drive& drive_;
   const InverterConfig& config_;
+  const VelocityRange range_;
   std::map<std::string, std::uint32_t> stop_values_;
   std::map<std::string, std::uint32_t> words_;
   std::optional<Target> target_;

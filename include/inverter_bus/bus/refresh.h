@@ -63,6 +63,10 @@ public:
   /// The marker of a restart that was just read is dealt with: the rest of this refresh must not find it once more, after
   /// the drive has been told what it had forgotten.
   void restartNoted();
+  /// The drive may have been switched off and on: whether it was is read before any other slow value.
+  void suspectRestart();
+  /// Whether our RUN is still in force is read before any other slow value.
+  void askForRun();
   TimePoint stamp() const;
   bool hasStamp() const;
   /// Nothing that was read counts any more (inverter offline).
@@ -90,6 +94,7 @@ private:
   };
   void plan(TimePoint now);
   void planSlow(TimePoint now);
+  bool goesFirst(const Block& block) const;
   void buildBlocks();
   void takeRunWords(const Block& block, const wire::Reply& reply);
   bool isChosenWord(const Block& block, const wire::Reply& reply) const;
@@ -123,6 +128,8 @@ private:
   unsigned block_refusals_ = 0;
   /// The slow words that decide over safety have come since the last return.
   bool run_heard_ = false;
+  /// An exchange got lost since the marker of a restart was read.
+  bool restart_suspected_ = false;
 };
 
 /// Splits a read in two at the widest gap between its values; a block of one value stays as it is.

@@ -52,12 +52,29 @@ struct InverterView
   unsigned stop_attempts = 0;
   /// The stop is written and only its read-back is due.
   bool stop_written = false;
+  /// One of a flood of stops of an inverter whose RUN is off already.
+  bool stop_repeats = false;
   /// No exchange before this time (the reply of an earlier one could be taken for its answer).
   TimePoint refresh_not_before;
   /// Latest start of the next exchange if the drive's own communication time-out shall not strike.
   std::optional<TimePoint> serve_by;
   /// Single exchanges of long jobs wait (settings to be read).
   bool background = false;
+  /// No frame of its stop before this time: one is in the gateway.
+  TimePoint stop_not_before;
+  /// Its refresh that went in spite of a busy gateway is not answered yet.
+  bool refresh_unanswered = false;
+};
+
+/// What the way to the drives allows at the moment.
+struct Gate
+{
+  /// Only stops, and the refresh that a drive's own time-out needs: a gateway still works on a lost request.
+  bool stops_only = false;
+  /// When that ends.
+  TimePoint until;
+  /// Offline inverters without a pending stop may be probed.
+  bool bare_probes = true;
 };
 
 /// The scheduler's decision.
@@ -78,6 +95,8 @@ struct Pick
     Background
   };
   What what = What::Nothing;
+  /// Whom the exchange is for; of a grouped velocity the member whose turn it is. Who books another one in done() has
+  /// found that this one needed no frame.
   std::size_t inverter = 0;
   CommandId command = 0;
   /// Paid from the probes' share of the bus time.
@@ -90,8 +109,12 @@ struct Pick
 /// Who goes next on the bus (contract, section 3). Pure: time comes in as an argument, a decision goes out; no clock, no
 /// thread, no I/O. Equal claims are decided by node order, so a run can be repeated exactly.
 ///
-/// Order: stops; urgent commands (a 0); the rest of a velocity unit under way; drives whose own time-out is near; the
+/// Order: stops; urgent commands (a 0); the rest of velocity units under way; drives whose own time-out is near; the
 /// long jobs' eighth exchange; commands alternating with refreshes; probes within their share; refreshes; long jobs.
+///
+/// But for stops nobody goes on while another inverter waits (contract, 8.1): after a frame of a velocity, or a read that
+/// a deadline began, another inverter's command or deadline comes first, so that the members of a group take turns frame
+/// by frame; after an exchange that was lost everybody else comes first, with a refresh, too.
 class Scheduler
 {
 public:
@@ -117,21 +140,27 @@ public:
   void eraseVelocity(std::size_t inverter);
   void makeUrgent(std::size_t inverter);
   void postpone(CommandId id, TimePoint not_before);
+  /// One member of a grouped velocity that has to wait or to be repeated goes its own way as \p own, in the group's place
+  /// and not before \p not_before; the others go on without it. A velocity of one inverter is only postponed.
+  void splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before);
   bool velocityWaits(std::size_t inverter) const;
   /// Inverters that a waiting velocity still has to serve, in node order; empty: no such command.
   std::vector<std::size_t> members(CommandId id) const;
 
+  /// A refresh of this inverter goes as soon as others let it, also in the pause of the interval.
+  void readSoon(std::size_t inverter);
+
   // --- decisions ----------------------------------------------------------------------------------------------------
   /// The next exchange, or when to ask again.
-  Pick next(TimePoint now, const std::vector<InverterView>& views);
+  Pick next(TimePoint now, const std::vector<InverterView>& views, const Gate& gate = Gate());
 
   /// Books the end of the exchange that was picked.
   /// \param more Refresh: the inverter's refresh needs another exchange. Command (velocity): its unit goes on.
   /// \param answered a reply came (a probe that is answered costs nothing of the probes' share).
   void done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered);
 
-  /// A velocity unit that was cut short (stop, offline) goes on no more.
-  void endUnit(CommandId id);
+  /// What a probe of \p start has cost after all, when that shows only later: a gateway that was kept busy by it.
+  void chargeProbe(TimePoint now, Duration cost);
 
   // --- cycle --------------------------------------------------------------------------------------------------------
   /// Complete status cycles so far.
@@ -142,8 +171,8 @@ public:
   bool pauseWasCut() const;
   /// Exchanges so far.
   std::uint64_t exchanges() const;
-  /// The whole bus starts afresh (port opened again).
-  void restartCycle(TimePoint now);
+  /// The whole bus starts afresh (port opened again). \p probes_at_once: what probes have cost before doesn't count.
+  void restartCycle(TimePoint now, bool probes_at_once = true);
 
 private:
   struct Ticket
@@ -151,23 +180,46 @@ private:
     WaitingCommand command;
     std::uint64_t epoch;
     std::uint64_t sequence;
+    /// A velocity of which a frame has gone: a unit under way.
+    bool begun = false;
+    unsigned frames = 0;
+    /// The member that had the last frame.
+    std::optional<std::size_t> served;
   };
-  std::optional<Pick> pickStop(const std::vector<InverterView>& views, bool nothing_else) const;
+  std::optional<Pick> pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const;
   std::optional<Pick> pickDeadline(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickCommand(TimePoint now, bool urgent_only) const;
   std::optional<Pick> pickProbe(TimePoint now, const std::vector<InverterView>& views) const;
+  bool mayProbe(TimePoint now, const InverterView& view, std::size_t index) const;
   std::optional<Pick> pickRefresh(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> pickPutOff(TimePoint now, const std::vector<InverterView>& views) const;
+  std::optional<Pick> pickOfCycle(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickBackground(const std::vector<InverterView>& views) const;
   Pick nothing(TimePoint now, const std::vector<InverterView>& views) const;
   bool takesPart(const InverterView& view) const;
-  bool findNextOfCycle(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<std::size_t> nextOfCycle(TimePoint now, const std::vector<InverterView>& views);
+  bool isPutOff(std::size_t inverter) const;
   void closeCycle(TimePoint now);
   Pick choose(TimePoint now, const std::vector<InverterView>& views);
+  Pick chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate);
   std::optional<Pick> chooseBehindStops(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseGoingOn(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseInTurn(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseForAnother(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> goOnWithUnit(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> goOnWithRefresh(TimePoint now, const std::vector<InverterView>& views);
+  bool deadlinesMayGo(const std::vector<InverterView>& views) const;
+  bool backgroundIsDue(const std::vector<InverterView>& views) const;
+  void doneCommand(const Pick& pick, bool more);
+  void doneRefresh(const Pick& pick, bool more, bool answered);
   void noteHalfRefresh(const Pick& pick, bool more);
+  void forgetOffline(const std::vector<InverterView>& views);
   void bookStop(const Pick& pick, const std::vector<InverterView>& views);
   std::size_t readyCommands(TimePoint now) const;
   bool ready(const Ticket& ticket, TimePoint now) const;
+  std::size_t nextMember(const Ticket& ticket) const;
+  bool startsTogether(const Ticket& ticket, TimePoint now) const;
+  int rank(const Ticket& ticket, TimePoint now, bool one_goes_on) const;
   const Ticket* firstReady(TimePoint now, bool urgent_only) const;
   std::deque<Ticket>::iterator find(CommandId id);
 
@@ -180,22 +232,41 @@ private:
   // stops
   std::vector<bool> stop_pending_;
   std::vector<std::uint64_t> last_stop_exchange_;
-  /// Its last refresh was not answered.
-  std::vector<bool> silent_at_deadline_;
+  /// The exchange in which its refresh was not answered last; 0: it has answered since.
+  std::vector<std::uint64_t> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
+  /// After a stop that was not answered: as long as it took.
+  TimePoint patient_until_;
+  /// Frames of stops since the last exchange that took nothing from a stop.
   unsigned stops_in_a_row_ = 0;
+  /// The last exchange went although a stop waited.
+  bool let_through_ = false;
+
+  // who had the last exchange
+  /// Nobody after a stop: stops are free of the rule.
+  std::optional<std::size_t> last_inverter_;
+  bool last_lost_ = false;
+  CommandId last_command_ = 0;
+  /// Not to be chosen in the decision at hand, if there is anybody else.
+  std::optional<std::size_t> avoided_;
 
   // commands and refreshes
-  CommandId unit_ = 0;
   unsigned commands_in_a_row_ = 0;
   unsigned exchanges_without_background_ = 0;
   unsigned deadlines_in_a_row_ = 0;
-  /// A refresh that a deadline began and that needs another read.
-  std::optional<std::size_t> half_refreshed_;
+  /// Refreshes that a deadline began and that need another read.
+  std::deque<std::size_t> half_refreshed_;
+  /// Those whose turn in the cycle came just after an exchange of theirs was lost: they take it after somebody else.
+  std::deque<std::size_t> put_off_;
+  /// One of them had its turn last: the cycle goes on before the next one has.
+  bool cycle_first_ = false;
 
   // probes
   std::size_t probe_cursor_ = 0;
   TimePoint next_probe_;
+  std::vector<TimePoint> last_probe_;
+  /// Of the gate at hand.
+  bool bare_probes_ = true;
 
   // cycle
   std::size_t cursor_ = 0;

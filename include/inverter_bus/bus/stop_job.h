@@ -29,6 +29,12 @@ public:
   unsigned attempts() const;
   /// Written and acknowledged: the read-back is next.
   bool written() const;
+  /// Somebody asks for it again and again: it was confirmed several times in a row, each time shortly before the next one.
+  bool repeats() const;
+  /// The inverter is out of sight: whatever was confirmed may be over.
+  void forgetConfirmation();
+  /// When the last frame of any stop of this inverter left; the epoch: none has.
+  TimePoint lastSentAt() const;
 
   /// The next frame of the stop.
   wire::Request next() const;
@@ -46,10 +52,20 @@ public:
   /// \p may_be_late: the answer could as well be the late one to an earlier request of the same shape (rule 3.9), from
   /// which a stop's writes are exempt. Then only a read-back of RUN confirms, or a write that no late reply can answer.
   Progress done(const wire::Reply& reply, bool may_be_late = false);
+  /// The write that has just ended may be followed by an older request that sets RUN, in a gateway (contract, 8.8): whatever
+  /// its answer, only another write confirms.
+  void writeOnceMore();
+  /// Such a write has ended, and the other one has not gone yet.
+  bool provisional() const;
+  /// Time from the request to the answer of its first frame, once; for where the way to the wire can't be seen.
+  std::optional<Duration> answered(TimePoint now);
   /// The next write shall go only when no late reply of its shape can come any more; a loop-back sees to that.
   bool wantsClearLine() const;
   /// The read-back can't be asked now: the next attempt begins.
   void writeAgain();
+  /// No newer velocity takes the place of the pending stop; without this a stop by a command of 0 gives way to one.
+  void hold();
+  bool held() const;
   /// RUN was seen off by a status read that was sent after the write.
   void confirm();
   /// A newer command of the same user takes its place (a command of 0 that was superseded).
@@ -65,12 +81,18 @@ private:
   const drive::Drive& drive_;
   std::uint8_t station_;
   bool pending_ = false;
+  bool held_ = false;
   StopMode mode_ = StopMode::Decelerate;
   unsigned attempts_ = 0;
   std::size_t step_ = 0;
   std::uint16_t last_error_ = 0;
   TimePoint requested_at_;
+  TimePoint last_sent_at_;
+  bool confirmed_ = false;
+  unsigned repeats_ = 0;
   bool first_frame_left_ = false;
+  bool first_frame_answered_ = false;
+  bool provisional_ = false;
   /// A write of this attempt may have been answered by a late reply to an earlier request.
   bool acknowledged_in_doubt_ = false;
   bool wants_clear_line_ = false;

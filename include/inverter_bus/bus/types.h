@@ -34,6 +34,9 @@ std::string errorText(std::uint16_t error_id);
 /// ones of the moment (busy, locked, running). CompoWay/F has response codes for both.
 bool isLastingRefusal(const wire::Reply& reply);
 
+/// The drive has answered, be it that it will not.
+bool isAnswered(const wire::Reply& reply);
+
 enum class StopMode : std::uint8_t
 {
   Decelerate = 0,

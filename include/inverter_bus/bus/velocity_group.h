@@ -4,6 +4,7 @@
 #define INVERTER_BUS_BUS_VELOCITY_GROUP_H
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -18,15 +19,18 @@ struct VelocityGroup
 {
   /// Empty, or why the group as a whole is refused.
   std::string problem;
-  /// Inverters and velocities; of a refused group the zeros only, since a 0 is never refused.
+  /// Inverters and velocities; of a refused group those that stop only, since a stop is never refused.
   std::vector<std::pair<std::size_t, double>> targets;
   /// Every inverter that the message names, once.
   std::vector<std::size_t> named;
 };
 
+/// Whether a velocity takes an inverter's RUN off: 0, or near it.
+using Stops = std::function<bool(std::size_t inverter, double velocity)>;
+
 /// \p names and \p velocities as a message brought them, of any content and length.
 VelocityGroup resolveGroup(const std::vector<std::string>& names, const std::vector<double>& velocities,
-                           const std::map<std::string, std::size_t>& index_by_name);
+                           const std::map<std::string, std::size_t>& index_by_name, const Stops& stops);
 }  // namespace bus
 }  // namespace inverter_bus
 

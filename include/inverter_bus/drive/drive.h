@@ -33,6 +33,8 @@ struct Monitor
   std::optional<bool> overload_warning;
   std::optional<bool> pid_deviation;
   std::optional<bool> faulted;
+  /// Raw value of \ref faulted that means nothing in the profile; \ref faulted is then empty. Counts as a trip.
+  std::optional<std::uint32_t> unknown_trip;
   std::optional<bool> restarted;  ///< the drive has forgotten what it was told since the last return
   std::optional<std::uint32_t> raw_status;
   std::optional<std::uint16_t> fault_code;
@@ -43,6 +45,12 @@ struct Monitor
   std::optional<double> dc_voltage;        ///< [V]
   std::optional<double> torque;            ///< [% of rated]
   std::optional<double> temperature;       ///< [degC]
+
+  /// What must be assumed: a state that nobody knows is one; empty: the drive has not told.
+  std::optional<bool> tripped() const
+  {
+    return unknown_trip ? std::optional<bool>(true) : faulted;
+  }
 };
 
 /// One read exchange and the monitor fields that it brings.
@@ -164,6 +172,9 @@ public:
   void decodeFault(std::size_t index, const ReadBlock& block, const wire::Bytes& reply, FaultRecord& record) const;
   /// "" for 0, else the text of the table or "unknown trip N": never empty for a code.
   std::string faultText(std::uint16_t code) const;
+  /// Why \p monitor counts as tripped: the code's text, or the state that the profile does not know with the code's text
+  /// after it.
+  std::string tripText(const Monitor& monitor) const;
   std::string warningText(std::uint32_t code) const;
 
   // --- parameters -----------------------------------------------------------------------------------------------

@@ -89,6 +89,8 @@ struct Item
   std::optional<unsigned> bit;
   /// Bits of the register that count (others are undefined on this drive).
   std::uint32_t mask = 0xFFFFFFFF;
+  /// A flag that is true whatever the masked value is, unless it is 0 (an error word).
+  bool nonzero = false;
   /// Raw value to meaning, where the drive counts otherwise than we do (direction: 2 means reverse = -1).
   std::map<std::uint32_t, int> values;
   /// Empty, or the name under which this item is unconfirmed.
@@ -325,6 +327,8 @@ struct Profile
   std::set<std::string> unconfirmed;
   /// Names that only concern entries of the tables: parameters, their ranges, trip texts.
   std::set<std::string> unconfirmed_tables;
+  /// Monitors that are left out because of a mistake that harms nothing else (a wrong unit), one line each ("file:line: ...").
+  std::vector<std::string> mistakes;
 
   /// The register or variable after \p number, counted as the drive counts: distances are differences of these.
   unsigned position(std::uint16_t number) const;
@@ -339,9 +343,16 @@ struct ProfileChanges
   std::string place;
   /// Names of unconfirmed items that the user has checked, or `all`.
   std::vector<std::string> confirm;
+  /// Names of skippableFields() that are left out: not read, not reported, nor what is unconfirmed in them.
+  std::vector<std::string> skip;
   /// Where \ref confirm stands, for messages; empty: where the overrides do.
   std::string confirm_place;
 };
+
+/// What `skip` may leave out: fields of the status, `store_busy`, and `trip_memory` (the quantities beside the trip codes).
+const std::set<std::string>& skippableFields();
+/// Fields of the status that can't be left out: what decides over safety (contract, 8.3), and the drive's own word.
+const std::set<std::string>& protectedFields();
 
 /// Reads the profile \p name_or_path: an absolute path, or a name that stands for `<directory>/<name>.yaml`.
 /// \throws ConfigurationError "file:line: key ...: what is wrong, what is allowed"

@@ -40,6 +40,7 @@ public:
   HitachiDrive(const HitachiModel& model, const DriveOptions& options);
 
   Refusal trip(int code, TimePoint now) override;
+  Refusal showTripAs(unsigned state) override;
   Refusal takeOverAtPanel(double hertz, TimePoint now) override;
   Refusal releasePanel(TimePoint now) override;
   Refusal pressStopKey(TimePoint now) override;
@@ -171,7 +172,9 @@ private:
   bool trip_after_stop_ = false;
   bool safe_stop_ = false;
   bool tripped_ = false;
-  std::deque<TripRecord> trips_;  // newest first
+  static constexpr unsigned TRIP_STATE = 2;
+  unsigned trip_state_ = TRIP_STATE;  ///< status B while it is tripped
+  std::deque<TripRecord> trips_;      // newest first
   std::uint32_t trip_count_ = 0;
   bool store_next_write_ = false;  // register 0902h
   bool store_this_write_ = false;

@@ -111,6 +111,8 @@ public:
   /// @{
   /// Trips the drive. @param code as the drive's manual numbers it
   virtual Refusal trip(int code, TimePoint now) = 0;
+  /// What the drive's state word reads while this trip lasts, instead of what its manual says; until it is reset.
+  virtual Refusal showTripAs(unsigned state);
   /// Someone takes the drive over at its panel and runs the motor. @param hertz sign = direction, 0 = stopped
   virtual Refusal takeOverAtPanel(double hertz, TimePoint now) = 0;
   virtual Refusal releasePanel(TimePoint now) = 0;

@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "inverter_bus/wire/echo_filter.h"
+#include "inverter_bus/wire/gateway_record.h"
+#include "inverter_bus/wire/peer_words.h"
 #include "inverter_bus/wire/protocol.h"
 #include "inverter_bus/wire/reply_bars.h"
+#include "inverter_bus/wire/telnet_filter.h"
 
 namespace inverter_bus
 {
@@ -21,24 +24,29 @@ namespace wire
 class LineTiming
 {
 public:
-  /// \param baud_rate bits per second (behind a gateway: that of the line), > 0
+  /// A serial port of this machine. The longest pause inside a reply is 25 ms (16 ms of a USB adapter's latency timer
+  /// and some reserve), at low rates 18 characters: a 16550A whose FIFO reports up to 14 bytes at a time tells of the rest
+  /// after a silence of 4.
+  /// \param baud_rate bits per second, > 0
   /// \param bits_per_character start, data, parity and stop bits: 9 to 12
-  /// \param delivery longest pause that the way from the line to this program can put into a frame: 16 ms of a USB
-  /// adapter's latency timer and some reserve; more for a gateway
-  LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration delivery = std::chrono::milliseconds(25));
+  LineTiming(unsigned baud_rate, unsigned bits_per_character);
+  /// \param baud_rate behind a gateway: that of the line
+  /// \param pause longest that the way from the line to this program can put into a reply
+  LineTiming(unsigned baud_rate, unsigned bits_per_character, Duration pause);
 
   /// Time of \p count characters on the wire.
   Duration characters(double count) const;
   /// Silence before a request: \p gap_characters; above 19200 baud a character counts as 0.5 ms, which makes the 1.75
   /// ms that Modbus over serial line V1.02, section 2.5.1.1 asks for in place of 3.5 characters.
   Duration gap(double gap_characters) const;
-  /// Silence after which the rest of a frame that has begun will not come any more.
+  /// Silence after which the rest of a frame that has begun will not come any more: the longest pause, and no less than
+  /// the gap.
   Duration patience(double gap_characters) const;
 
 private:
   double character_s_;
   bool fast_;
-  Duration delivery_;
+  Duration pause_;
 };
 
 /// A frame that passed the line, for the flight recorder.
@@ -74,12 +82,21 @@ struct LineCounters
   std::uint64_t echoes = 0;          ///< exchanges whose local echo was removed
 };
 
-/// A late reply, measured: /diagnostics says which response_timeout would have caught it.
+/// The answer to a request that had been given up.
 struct LateReply
 {
+  /// That was asked; what a gateway makes of it in the reply does not count.
   std::uint8_t station = 0;
-  /// From the end of the request on the wire to the first byte of its late reply.
-  Duration delay{ 0 };
+  /// From the end of the request on the wire to the first byte of its late reply: /diagnostics says which
+  /// response_timeout would have caught it. Absent where that says nothing: several lost requests could have got this
+  /// reply, or no longer time-out makes a drive answer that a gateway has given up.
+  std::optional<Duration> delay;
+  /// Reply::ticket of the request; 0 where several could have got this reply.
+  std::uint64_t ticket = 0;
+  /// The drive refuses (an exception of its own).
+  bool exception = false;
+  /// The exception code by which a gateway says that the drive has not answered; 0: the drive did.
+  std::uint8_t gateway_code = 0;
 };
 
 /// One request at a time over one port: gap, transmission, waiting, checking, cleaning up after a lost reply. The only
@@ -88,7 +105,7 @@ struct LateReply
 /// After a time-out or a damaged reply, the shape of that request is barred for one second (contract, rule 3.9),
 /// because most protocols have no transaction number: a reply that comes late would be taken for the answer to the next
 /// request of the same shape. The bar falls when the late reply has come, or when a loop-back (08H) of that station
-/// with a fresh number was answered after it.
+/// with a fresh number was answered after it. Behind a gateway GatewayRecord decides in its place.
 class Line
 {
 public:
@@ -101,8 +118,11 @@ public:
 
   /// Opens the port; forgets all bars, the echo finding and what was in the buffers. The first exchange after it must
   /// be a read (see EchoFilter); it need not be answered.
+  /// May be Pending (see Port): nothing is forgotten before it is Opened.
   OpenResult open(std::string& error);
   void close();
+  /// As close(), but what was sent and has not arrived yet is thrown away (TCP: RST).
+  void abandon();
   bool isOpen() const;
 
   /// Earliest time at which the next request may start: gap after the last byte in either direction, turnaround after a
@@ -130,10 +150,38 @@ public:
   Duration costUnanswered(const Request& request) const;
 
   const LineCounters& counters() const;
+  /// Longest pause inside a reply that is waited out.
+  Duration patience() const;
+
   const LineTiming& timing() const;
   bool echoFound() const;
-  /// Late replies since the last call.
+  /// Late replies since the last call, refusals and a gateway's exceptions included.
   std::vector<LateReply> takeLateReplies();
+
+  // --- the connection and its other end (contract, 8.8 to 8.11) -----------------------------------------------------
+  /// How the port got lost since it was opened last; None while it is open or if close() or abandon() ended it.
+  Loss lastLoss() const;
+  /// A valid reply came since it was opened.
+  bool provenSinceOpen() const;
+  /// The other end of an `rtu+tcp://` connection has begun to speak telnet before its first valid reply: FFH is doubled
+  /// in what is sent from then on, and undoubled in what is received.
+  bool telnetFound() const;
+  /// Text that the other end has sent since it was opened or since its last valid reply, fit for a message; empty if
+  /// what came is no text. A server that closes says so why ("Port already in use"); one that goes on has only greeted.
+  /// Kept until the port is opened again.
+  std::string peerWords() const;
+  /// Modbus TCP: requests of this connection that nobody has answered yet, oldest first. Empty in other protocols.
+  std::vector<Outstanding> outstanding() const;
+  /// Modbus TCP: the gateway has shown on this connection that it keeps transaction numbers and units.
+  bool gatewayTrusted() const;
+  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("the gateway's replies bear transaction number 0 ..."),
+  /// as seen since the start; empty as long as it does not. Name it once.
+  std::string gatewayQuirk() const;
+  /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come
+  /// could not be told apart; empty if it need not.
+  std::string mustReopen() const;
+  /// Time after which a gateway has given up a request that it left unanswered (`gateway_timeout`, default 3 s).
+  void setGatewayTimeout(Duration timeout);
 
 private:
   struct Waiting;
@@ -147,15 +195,22 @@ private:
   bool consumeHead(Waiting& waiting, Reply& reply);
   bool answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
   void accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
-  void noteAnswer(const Parsed& parsed, const Bytes& raw);
+  void noteAnswer(Outcome outcome, const Parsed& parsed, const Bytes& raw);
   void expectEcho(const Request& request, const Bytes& frame);
   void giveUp(Waiting& waiting, Reply& reply);
+  void noteLoss();
   void lose(Reply& reply);
   void consumeIdle();
   void flushIdle();
   void consumeIdleHead();
   void stripEcho();
   bool noteUnasked(const Parsed& parsed, const Bytes& raw);
+  bool takeLate(const Parsed& parsed);
+  bool takeLateFromGateway(const Parsed& parsed);
+  void noteLate(const Parsed& parsed, std::uint8_t station, const ReplyBars::Late& lost, std::uint8_t gateway_code);
+  void noteAsked(const Waiting& waiting, const Reply& reply);
+  GatewayRecord::Answer answerOf(const Parsed& parsed) const;
+  bool isSurplus() const;
   void observe(FrameEvent::Kind kind, const Bytes& bytes, TimePoint time);
   void reportDamaged();
   void skip(std::size_t count);
@@ -183,6 +238,15 @@ private:
   ReplyBars bars_;
   EchoFilter echo_;
   std::vector<LateReply> late_;
+  /// Modbus TCP: in place of bars_.
+  std::optional<GatewayRecord> gateway_;
+  TelnetFilter telnet_;
+  PeerWords words_;
+  Loss last_loss_ = Loss::None;
+  /// A valid reply came since the port was opened.
+  bool proven_ = false;
+  /// Nothing but bytes directly behind it has come since the last valid reply.
+  bool behind_reply_ = false;
   /// The last request if it was one that the drive may answer or not.
   std::optional<Request> silent_request_;
 };

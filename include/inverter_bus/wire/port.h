@@ -22,7 +22,21 @@ enum class OpenResult
   /// The device does not exist, refuses a setting or gives an I/O error: try again later.
   NotThere,
   /// Another process holds it (flock, TIOCEXCL, EBUSY).
-  InUse
+  InUse,
+  /// Not decided yet (a name is looked up, a connection is being made): call open() again, at once, until it says
+  /// something else. Each call returns within 50 ms, so that other duties go on in between.
+  Pending
+};
+
+/// How a port got lost.
+enum class Loss
+{
+  None,
+  /// Unplugged, I/O error, a network or host that does not answer any more.
+  Gone,
+  /// The other side has ended the connection in good order or refused to go on (end of stream, ECONNRESET, EPIPE): it is
+  /// there, and a new connection may do.
+  ClosedByPeer
 };
 
 /// What Port::receive() brought.
@@ -47,6 +61,11 @@ public:
   virtual OpenResult open(std::string& error) = 0;
   /// Closes; closing a closed port does nothing.
   virtual void close() = 0;
+  /// Closes at once and for good: nothing that was sent goes on, the other side is told so (TCP: RST).
+  virtual void abandon()
+  {
+    close();
+  }
   virtual bool isOpen() const = 0;
   /// As the user wrote it, for messages.
   virtual std::string name() const = 0;
@@ -58,6 +77,17 @@ public:
   /// Waits for bytes until \p deadline and appends what is there to \p buffer. A deadline in the past only takes what
   /// has already arrived.
   virtual ReceiveResult receive(Bytes& buffer, TimePoint deadline) = 0;
+
+  /// How it got lost since the last successful open(): asked after send() or receive() have said that it is gone.
+  virtual Loss lastLoss() const
+  {
+    return Loss::Gone;
+  }
+  /// A network connection: no adapter on the way returns what is sent, and somebody at its other end may speak first.
+  virtual bool isNetwork() const
+  {
+    return false;
+  }
 };
 }  // namespace wire
 }  // namespace inverter_bus

@@ -22,19 +22,24 @@ namespace wire
 class ReplyBars
 {
 public:
-  /// What is known of the request that a late reply belongs to.
-  struct Late
+  /// What is remembered of a lost request.
+  struct Lost
   {
-    /// Absent where several lost requests could have got this reply.
-    std::optional<TimePoint> request_end;
+    /// When it had left the line.
+    TimePoint request_end;
+    std::uint64_t ticket = 0;
   };
+  /// The request that a late reply belongs to; empty where several lost ones could have got it.
+  using Late = std::optional<Lost>;
 
-  /// The request of \p shape, which left the line at \p request_end, got no valid reply.
-  void add(const std::string& shape, std::uint8_t station, TimePoint request_end, TimePoint now);
+  /// The request of \p shape got no valid reply.
+  void add(const std::string& shape, std::uint8_t station, const Lost& lost, TimePoint now);
   /// End of the bar on \p shape; the clock's epoch if there is none.
   TimePoint barredUntil(const std::string& shape) const;
   /// True if a reply of \p shape (a beginning of shapes for an exception) may be the answer to a lost request.
   bool mayBeLate(const std::string& shape, TimePoint now) const;
+  /// True while the bar of any lost request stands: its reply may come yet.
+  bool owes(TimePoint now) const;
   /// A reply of \p shape came that nobody waits for. Lifts the bar of the request that it belongs to; empty if no lost
   /// request could have got it.
   std::optional<Late> take(const std::string& shape, TimePoint now);
@@ -47,7 +52,8 @@ private:
   {
     std::uint8_t station = 0;
     TimePoint until;
-    TimePoint request_end;
+    /// The last one.
+    Lost lost;
     /// Lost requests of this shape: a stop may be repeated despite the bar, and each may still be answered.
     std::size_t owed = 0;
   };

@@ -3,6 +3,7 @@
 #ifndef INVERTER_BUS_WIRE_REQUEST_H
 #define INVERTER_BUS_WIRE_REQUEST_H
 
+#include <bitset>
 #include <cstdint>
 #include <string>
 
@@ -12,6 +13,16 @@ namespace inverter_bus
 {
 namespace wire
 {
+/// Modbus exception codes, by their number.
+using ExceptionCodes = std::bitset<256>;
+
+/// All but 0AH and 0BH, by which a gateway says that it could not reach the drive (Modbus application protocol V1.1b3,
+/// section 7).
+inline ExceptionCodes everyExceptionOfADrive()
+{
+  return ~(ExceptionCodes().set(0x0A).set(0x0B));
+}
+
 /// One question on the bus, without the framing that a protocol puts around it.
 struct Request
 {
@@ -30,6 +41,9 @@ struct Request
   Duration reply_delay{ 0 };
   /// Silence after the request that counts as lost.
   Duration response_timeout{ seconds(0.1) };
+  /// Modbus: exceptions with these codes are the drive's own refusal. Any other one is a gateway's way to say that the
+  /// drive has not answered (contract, 8.7): Outcome::Timeout, and Reply::gateway_code says which.
+  ExceptionCodes own_exceptions = everyExceptionOfADrive();
 };
 
 /// How an exchange ended. Every value says what follows from it.
@@ -40,8 +54,8 @@ enum class Outcome
   /// The drive answered that it will not (Modbus exception, CompoWay/F response code). It is alive: never counts
   /// towards offline and is never repeated.
   Exception,
-  /// No byte in time, or a gateway says that the drive has not answered (exceptions 0AH and 0BH). Repeated up to
-  /// `retries`; counts towards offline.
+  /// No byte in time, or a gateway says that the drive has not answered (Reply::gateway_code). Repeated up to `retries`,
+  /// the latter never: the gateway has tried. Counts towards offline.
   Timeout,
   /// Bytes came, but no valid reply to this request; or the drive says that the request reached it damaged (error_id is
   /// then its end code, 0010 to 0013 hex). Repeated like a time-out.
@@ -65,6 +79,15 @@ struct Reply
   TimePoint finished_at;
   /// Silence between the end of the request on the wire and the first byte of the reply (Ok and Exception only).
   Duration turnaround{ 0 };
+  /// Running number of the line's requests, from 1; never used twice. A late reply bears that of its request. 0: nothing
+  /// was sent.
+  std::uint64_t ticket = 0;
+  /// Timeout: the exception code by which a gateway said so, which has then done with the request (nothing of it is
+  /// outstanding); 0: nobody answered.
+  std::uint8_t gateway_code = 0;
+  /// Timeout: the other end has closed the connection in place of the answer (contract, 8.9), and a new one is opened at
+  /// once.
+  bool connection_closed = false;
 };
 
 constexpr std::uint16_t ERROR_TIMEOUT = 0x0205;

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "inverter_bus/wire/port.h"
 
@@ -50,19 +49,23 @@ struct SerialSettings
   unsigned data_bits = 8;
   unsigned stop_bits = 1;
   Rs485 rs485 = Rs485::Auto;
-  /// flock, and TIOCEXCL on real ports (on a pseudo-terminal it would outlive a killed owner).
+  /// flock, and TIOCEXCL on real ports (on a pseudo-terminal it would outlive a killed owner). A shared port is never
+  /// flushed.
   bool exclusive = true;
   Transmission transmission = Transmission::Modbus;
 };
 
-/// Baud rates that termios of this system knows.
-std::vector<unsigned> supportedBaudRates();
+/// Baud rates that can be asked for, the slowest and the fastest of the kernel's own constants; whether a port can run at
+/// one shows when it is opened.
+constexpr unsigned SLOWEST_BAUD_RATE = 50;
+constexpr unsigned FASTEST_BAUD_RATE = 4000000;
 
 /// Start, data, parity and stop bits.
 unsigned bitsPerCharacter(const SerialSettings& settings);
 
 /// A tty, opened raw and non-blocking; frames leave through what SerialSettings::transmission says. A pseudo-terminal
-/// ignores parity and 7 data bits: that is accepted there and nowhere else.
+/// ignores parity and 7 data bits: that is accepted there and nowhere else. A baud rate that the port does not come
+/// within 2 % of is a refused setting: open() returns OpenResult::NotThere with the rates that are next to it.
 std::unique_ptr<Port> makeSerialPort(const SerialSettings& settings);
 
 /// FTDI latency timer of the adapter behind \p device in milliseconds, or -1 if there is none. Reads sysfs; any thread.

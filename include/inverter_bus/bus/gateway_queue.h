@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_GATEWAY_QUEUE_H
+#define INVERTER_BUS_BUS_GATEWAY_QUEUE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "inverter_bus/wire/clock.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What a request would do if a gateway carried it out late.
+enum class GatewayRisk
+{
+  /// A read, or a write that moves nothing.
+  None,
+  /// The refresh of a drive whose own time-out is near, which goes in spite of an older request.
+  Refresh,
+  /// A frame of a stop.
+  Stop,
+  /// May set RUN or raise the frequency.
+  Motion
+};
+
+/// The requests that a Modbus TCP gateway may still be working on (contract, 8.8). It works on one after the other, and
+/// behind a silent station each takes its own time-out: what is sent meanwhile waits in it, a stop too. So nothing but a
+/// stop follows a request that was lost, before that one was answered late or `gateway_timeout` has passed.
+///
+/// Pure: time comes in as an argument. Bus thread only (the coordinator's).
+class GatewayQueue
+{
+public:
+  struct Settings
+  {
+    /// There is a gateway (tcp://); without one this keeps nothing and allows everything.
+    bool active = false;
+    /// Key `gateway_timeout`: after that a gateway has given up.
+    Duration timeout{ 0 };
+    /// The longest one of the bus.
+    Duration response_timeout{ 0 };
+  };
+
+  explicit GatewayQueue(const Settings& settings);
+
+  bool active() const;
+
+  // --- what happened --------------------------------------------------------------------------------------------------
+  /// A request has left for \p inverter.
+  void sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk);
+  /// It was answered in time, by the drive or by the gateway.
+  void answered(TimePoint now, std::uint64_t ticket);
+  /// Our own time-out has passed.
+  void lost(TimePoint now, std::uint64_t ticket);
+  /// What is known of a request that was answered after all.
+  struct Late
+  {
+    std::size_t inverter = 0;
+    GatewayRisk risk = GatewayRisk::None;
+    /// It was alone in the gateway, so that a longer `response_timeout` would have caught its answer.
+    bool alone = false;
+  };
+  /// The answer came after all; empty for a ticket that is not owed an answer any more.
+  std::optional<Late> answeredLate(TimePoint now, std::uint64_t ticket);
+  /// The connection has ended: no answer comes any more, but what was under way may still be carried out.
+  void connectionEnded(TimePoint now);
+  /// Time has passed: what was waited for long enough is not owed any more. Returns the time that the gateway was kept for
+  /// nothing by one that was given up now.
+  std::optional<Duration> tick(TimePoint now);
+
+  // --- what may go ----------------------------------------------------------------------------------------------------
+  /// Nothing is unanswered: anything may be sent.
+  bool free(TimePoint now) const;
+  /// When free() becomes true if no answer comes.
+  TimePoint freeAt(TimePoint now) const;
+  /// When the next frame of a stop of \p inverter may go: at most one is in the gateway.
+  TimePoint stopMayGoAt(TimePoint now, std::size_t inverter) const;
+  /// A refresh of \p inverter that went in spite of older requests is unanswered.
+  bool refreshUnanswered(TimePoint now, std::size_t inverter) const;
+  /// Until when a request that may set \p inverter running can still be carried out; nothing: there is none.
+  std::optional<TimePoint> motionUntil(TimePoint now, std::size_t inverter) const;
+  /// An older request than \p ticket was unanswered when that one was sent: that it was not answered in time says nothing.
+  bool behindAnother(std::uint64_t ticket) const;
+
+  // --- what it has learned --------------------------------------------------------------------------------------------
+  /// How long the last request that nobody answered in time has kept the gateway; 0: none has.
+  Duration block() const;
+  /// It leaves requests unanswered for ever, as a server without a line behind it does.
+  bool silentByNature() const;
+  /// How long a lost request is waited for, counted from when it was sent.
+  Duration wait() const;
+  /// Longest time to an answer that came in time.
+  Duration longestReply() const;
+
+private:
+  struct Entry
+  {
+    std::uint64_t ticket = 0;
+    std::size_t inverter = 0;
+    GatewayRisk risk = GatewayRisk::None;
+    TimePoint sent_at;
+    /// Our time-out has passed without an answer.
+    bool lost = false;
+    bool behind_another = false;
+    /// Of a connection that has ended.
+    bool orphan = false;
+  };
+  TimePoint givenUpAt(const Entry& entry) const;
+  bool owed(const Entry& entry, TimePoint now) const;
+  std::vector<Entry>::iterator find(std::uint64_t ticket);
+  void noteUnanswered(const Entry& entry);
+
+  Settings settings_;
+  std::vector<Entry> entries_;
+  /// Whether the last request sent was behind another one.
+  std::uint64_t last_ticket_ = 0;
+  bool last_behind_another_ = false;
+  Duration block_{ 0 };
+  Duration longest_reply_{ 0 };
+  /// Lost requests in a row that were not answered within `gateway_timeout`.
+  unsigned unanswered_ = 0;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_GATEWAY_QUEUE_H

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
+
+#include "inverter_bus/bus/coordinator.h"
+#include "inverter_bus/wire/shown_number.h"
+
+// The way to the drives: what a gateway still works on, connections that are closed by their other end, links that have gone
+// mute, telnet servers.
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// Contract, 8.9: one line a minute.
+constexpr double RESUMED_LOG_PERIOD_S = 60.0;
+// How often a stop is sent over a telnet connection before it is closed.
+constexpr unsigned TELNET_STOP_ATTEMPTS = 2;
+// How soon a write is looked at again that waits for the first valid reply of a connection.
+constexpr double UNPROVEN_PERIOD_S = 0.02;
+// Contract, 8.10: the link is not renewed within a stop's first tries.
+constexpr unsigned STOP_TRIES_BEFORE_RENEWAL = 3;
+
+/// Modbus over serial line V1.02, section 2.2: individual slaves.
+bool isSerialStation(std::uint8_t station)
+{
+  return station >= 1 && station <= 247;
+}
+}  // namespace
+
+// --- gateway ---------------------------------------------------------------------------------------------------------
+
+GatewayRisk Coordinator::riskOf(const Current& current) const
+{
+  switch (current.purpose)
+  {
+    case Purpose::StopFrame:
+    case Purpose::Broadcast:
+      return GatewayRisk::Stop;
+    case Purpose::Velocity:
+      // What was meant to stop is no danger, whenever it is carried out.
+      return current.resync || !current.moves ? GatewayRisk::None : GatewayRisk::Motion;
+    case Purpose::Refresh:
+    case Purpose::KeepAlive:
+      return current.pick.deadline ? GatewayRisk::Refresh : GatewayRisk::None;
+    default:
+      return GatewayRisk::None;
+  }
+}
+
+/// After each exchange: what it leaves in the gateway.
+void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
+{
+  behind_another_ = false;
+  if (!gateway_.active() || current.request.broadcast)
+  {
+    return;
+  }
+  gateway_.sent(reply.sent_at, reply.ticket, current.inverter, riskOf(current));
+  const bool answered = isAnswered(reply) || reply.gateway_code != 0;
+  behind_another_ = !answered && gateway_.behindAnother(reply.ticket);
+  if (answered)
+  {
+    gateway_.answered(reply.finished_at, reply.ticket);
+  }
+  else
+  {
+    gateway_.lost(reply.finished_at, reply.ticket);
+  }
+}
+
+/// Contract, 8.8: what follows a lost request would wait behind it, in the gateway.
+Gate Coordinator::gate(TimePoint now)
+{
+  Gate gate;
+  if (const auto kept = gateway_.tick(now))
+  {
+    scheduler_->chargeProbe(now, *kept);
+  }
+  gate.stops_only = !gateway_.free(now);
+  gate.until = gateway_.freeAt(now);
+  gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {
+    const auto own = inverter->settings.driveTimeout();
+    return own && !inverter->offline() && inverter->mayRun() && *own < gateway_.block();
+  });
+  return gate;
+}
+
+/// The time that a probe takes from everybody else, with its silences; a refusal takes it too.
+Duration Coordinator::probePrice(const Current& current, const wire::Reply& reply) const
+{
+  const Duration own = reply.finished_at - reply.sent_at;
+  const bool by_gateway = gateway_.active() && reply.gateway_code != 0;
+  return std::max(by_gateway ? std::max(own, gateway_.block()) : own, line_.cost(current.request, Duration{ 0 }));
+}
+
+/// A stop whose frame went while an older request could still set RUN goes again when that one is over: only the second one
+/// counts.
+TimePoint Coordinator::stopNotBefore(TimePoint now, const Inverter& inverter) const
+{
+  if (untested(inverter))
+  {
+    return TimePoint::max();
+  }
+  const TimePoint next_frame = gateway_.stopMayGoAt(now, inverter.index);
+  const auto danger =
+      inverter.stop.pending() && inverter.stop.provisional() ? gateway_.motionUntil(now, inverter.index) : std::nullopt;
+  return danger ? std::max(next_frame, *danger) : next_frame;
+}
+
+/// A velocity of 0 that can't be confirmed now takes the way of a stop, which knows how to insist.
+void Coordinator::stopInsteadOfZeros(TimePoint now)
+{
+  for (const auto& inverter : inverters_)
+  {
+    const auto& target = inverter->movement.target();
+    if (target && target->zero && scheduler_->velocityWaits(inverter->index) && zeroNeedsStop(now, *inverter))
+    {
+      requestStop(now, *inverter, StopMode::Decelerate, gateway_.motionUntil(now, inverter->index).has_value(), "");
+    }
+  }
+}
+
+bool Coordinator::zeroNeedsStop(TimePoint now, const Inverter& inverter) const
+{
+  return gateway_.active() && (!gateway_.free(now) || gateway_.motionUntil(now, inverter.index));
+}
+
+Duration Coordinator::worstStop() const
+{
+  const Duration wire = budget_.worst_stop + longestReplyDelay();
+  if (!gateway_.active())
+  {
+    return wire;
+  }
+  const auto silent = std::count_if(inverters_.begin(), inverters_.end(),
+                                    [](const auto& inverter) { return inverter->offline() || !inverter->known(); });
+  const Duration block = gateway_.block() > Duration::zero() ? gateway_.block() : gateway_.wait();
+  return wire + static_cast<int>(silent) * block;
+}
+
+std::optional<Finding> Coordinator::gatewayFinding() const
+{
+  const bool anybody_away =
+      std::any_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) { return inverter->offline(); });
+  const Duration allowed = seconds(configuration_.bus.response_timeout);
+  if (!gateway_.active() || !anybody_away || gateway_.block() <= allowed)
+  {
+    return std::nullopt;
+  }
+  if (gateway_.silentByNature())
+  {
+    return Finding{ Level::Warn,
+                    "the gateway leaves requests to a silent station unanswered: set a time-out in it, so "
+                    "that it says so within response_timeout" };
+  }
+  return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
+                                   wire::shownDuration(gateway_.block()) +
+                                   ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
+                                   "(1 + repeats) below response_timeout (" +
+                                   wire::shownDuration(allowed) + ")" };
+}
+
+/// What it does to numbers and units, so that replies are told apart by their shapes alone.
+std::optional<Finding> Coordinator::quirkFinding() const
+{
+  const std::string quirk = line_.gatewayQuirk();
+  return quirk.empty() ? std::nullopt
+                       : std::optional<Finding>(Finding{ Level::Warn, "the gateway is used as it is: " + quirk });
+}
+
+// --- connection ------------------------------------------------------------------------------------------------------
+
+std::vector<std::size_t> Coordinator::onlineInverters() const
+{
+  std::vector<std::size_t> online;
+  for (const auto& inverter : inverters_)
+  {
+    if (!inverter->offline() && inverter->known())
+    {
+      online.push_back(inverter->index);
+    }
+  }
+  return online;
+}
+
+/// The other end has closed the connection, in place of the answer of \p index or between two exchanges. True: it is opened
+/// again at once, and nothing else happens.
+bool Coordinator::resumes(TimePoint now, std::optional<std::size_t> index)
+{
+  if (!connected_ || line_.lastLoss() != wire::Loss::ClosedByPeer)
+  {
+    connection_.lost();
+    return false;
+  }
+  // Our own time-out may have passed before the gateway's.
+  const ConnectionWatch::Verdict verdict = connection_.closed(now, index ? index : last_unanswered_);
+  if (verdict == ConnectionWatch::Verdict::TakenByAnother)
+  {
+    log(Level::Warn, "port " + configuration_.bus.port +
+                         ": the other end closes the connection again and again: does another client use it?");
+  }
+  if (verdict != ConnectionWatch::Verdict::Resume)
+  {
+    return false;
+  }
+  gateway_.connectionEnded(now);
+  ++resumed_;
+  if (!resumed_logged_at_ || now - *resumed_logged_at_ >= seconds(RESUMED_LOG_PERIOD_S))
+  {
+    log(Level::Ok, "port " + configuration_.bus.port + ": the other end has closed the connection; it is opened again" +
+                       (resumed_ > 1 ? " (" + std::to_string(resumed_) + " times since the last line)" : ""));
+    resumed_logged_at_ = now;
+    resumed_ = 0;
+  }
+  return true;
+}
+
+void Coordinator::portClosed(TimePoint now)
+{
+  if (!resumes(now, std::nullopt))
+  {
+    portLost(now);
+  }
+}
+
+void Coordinator::portPending(TimePoint now)
+{
+  if (connection_.resuming() && connection_.notOpen(now) == ConnectionWatch::Verdict::Lost)
+  {
+    portLost(now);
+  }
+}
+
+TimePoint Coordinator::openNotBefore() const
+{
+  return connection_.openNotBefore();
+}
+
+bool Coordinator::resuming() const
+{
+  return connection_.resuming();
+}
+
+/// After each exchange: who is there over this connection.
+void Coordinator::noteConnection(TimePoint now, const Current& current, const wire::Reply& reply)
+{
+  last_unanswered_.reset();
+  if (isAnswered(reply))
+  {
+    connection_.answered(now, current.inverter);
+  }
+  else
+  {
+    last_unanswered_ = current.inverter;
+    connection_.unanswered(current.inverter);
+  }
+  if (connection_.nobodyAnswered())
+  {
+    log(Level::Error, "port " + configuration_.bus.port + ": is open again, but nobody answers");
+    connection_.lost();
+    loseEverybody(now, wire::ERROR_TIMEOUT);
+  }
+}
+
+/// A drive with a port of its own (tcp://, no station of a serial line) that has not told its status yet: to a gateway the same
+/// number means something else, so that nothing but reads goes there (contract, 8.8).
+bool Coordinator::untested(const Inverter& inverter) const
+{
+  return configuration_.bus.modbus_tcp && !isSerialStation(inverter.config.node) && !inverter.everKnown();
+}
+
+/// Nothing but reads and stops goes to somebody who may be a telnet server (contract, 8.11).
+bool Coordinator::mustWait(TimePoint now, const Current& current)
+{
+  const bool unproven = configuration_.bus.gateway && !configuration_.bus.modbus_tcp && !line_.provenSinceOpen();
+  const bool writes = current.purpose == Purpose::Velocity || current.purpose == Purpose::Job;
+  if (unproven && writes)
+  {
+    scheduler_->postpone(current.pick.command, now + seconds(UNPROVEN_PERIOD_S));
+  }
+  return unproven && (writes || current.purpose == Purpose::Release);
+}
+
+void Coordinator::loseEverybody(TimePoint now, std::uint16_t error_id)
+{
+  for (const auto& inverter : inverters_)
+  {
+    if (!inverter->offline())
+    {
+      inverter->goOffline(error_id);
+      wentOffline(now, *inverter, error_id);
+    }
+    inverter->noteExchangeError(error_id);
+  }
+}
+
+/// After a reopening: pending stops, then one read of each inverter that was online, before anything else.
+std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
+{
+  while (const auto index = connection_.toRead())
+  {
+    if (inverters_[*index]->offline())
+    {
+      connection_.unanswered(*index);
+      continue;
+    }
+    gate.stops_only = true;
+    const Pick stop = scheduler_->next(now, views(now), gate);
+    if (stop.what != Pick::What::Nothing || !gateway_.free(now))
+    {
+      return stop;
+    }
+    Pick pick;
+    pick.what = Pick::What::Refresh;
+    pick.inverter = *index;
+    return pick;
+  }
+  return std::nullopt;
+}
+
+// --- mute links, telnet ----------------------------------------------------------------------------------------------
+
+void Coordinator::noteLink(const wire::Reply& reply)
+{
+  if (isAnswered(reply) || reply.gateway_code != 0)
+  {
+    link_.answered();
+  }
+  else
+  {
+    link_.lost(reply.sent_at);
+  }
+}
+
+bool Coordinator::renewalDue(TimePoint now) const
+{
+  const bool serial = !configuration_.bus.gateway;
+  const bool stop_under_way =
+      serial && std::any_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
+        return inverter->stop.pending() && inverter->stop.attempts() < STOP_TRIES_BEFORE_RENEWAL;
+      });
+  return connected_ && !shutting_down_ && !stop_under_way && link_.mute(now);
+}
+
+void Coordinator::renewing(TimePoint now)
+{
+  if (link_.renewing(now))
+  {
+    log(Level::Warn, "port " + configuration_.bus.port +
+                         ": is open, but nobody answers any more: it is opened anew, again and again while that lasts");
+  }
+  reopening(now);
+}
+
+void Coordinator::reopening(TimePoint now)
+{
+  connection_.reopening(now);
+  gateway_.connectionEnded(now);
+}
+
+/// Only stops go over a telnet connection, and then it is closed.
+bool Coordinator::telnetOver(TimePoint now) const
+{
+  return line_.telnetFound() && std::none_of(inverters_.begin(), inverters_.end(), [now](const auto& inverter) {
+           return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
+         });
+}
+
+void Coordinator::closedForTelnet(TimePoint now)
+{
+  connection_.slowDown();
+  portFails(now, "port " + configuration_.bus.port + " is a telnet server (telnet mode): set the port to raw");
+}
+}  // namespace bus
+}  // namespace inverter_bus

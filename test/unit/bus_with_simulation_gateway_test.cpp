@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// A whole bus behind a Modbus TCP gateway, in virtual time (contract, 8.8 to 8.10, 8.16).
+
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "virtual_bus.h"
+
+namespace inverter_bus
+{
+namespace
+{
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::size_t A = 0;
+constexpr std::size_t B = 1;
+
+std::string twoDrives(const std::string& more = "")
+{
+  return "port: tcp://virtual\n"
+         "response_timeout: 0.3\n" +
+         more +
+         "defaults: {drive: omron_mx2, command_timeout: 5.0, max_velocity: 60.0}\n"
+         "scan_list:\n"
+         "  - {name: a, node: 1}\n"
+         "  - {name: b, node: 2}\n";
+}
+
+class BehindAGateway : public ::testing::Test
+{
+protected:
+  void start(const std::string& yaml = twoDrives())
+  {
+    bus_ = std::make_unique<VirtualBus>(yaml);
+  }
+
+  /// \p index runs at 20 Hz, and is commanded on.
+  void turn(std::size_t index, const std::string& name)
+  {
+    bus_->settleIn(20.0);
+    bus_->stream(index, 20.0, 0.1, 300.0);
+    ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor(name, "run_coil") > 0.0; }));
+    ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(index).monitor.running.value_or(false); }));
+  }
+
+  bool online(std::size_t index) const
+  {
+    return bus_->hasStatus(index) && !bus_->status(index).communication_error;
+  }
+
+  std::unique_ptr<VirtualBus> bus_;
+};
+
+TEST_F(BehindAGateway, everythingWorks)
+{
+  start();
+  turn(A, "a");
+  const auto stop = bus_->wait(bus_->stop(A));
+  EXPECT_TRUE(stop.success) << stop.message;
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
+TEST_F(BehindAGateway, aDeadUnitStopsNobodyElse)
+{
+  for (const double silence : { 0.5, 1.0, 2.2 })
+  {
+    start();
+    bus_->gateway().behaviour.silence = silence;
+    turn(A, "a");
+    bus_->world("b offline");
+    std::size_t longest = 0;
+    for (int second = 0; second < 60; ++second)
+    {
+      bus_->run(1.0);
+      longest = std::max(longest, bus_->gateway().deepest());
+      ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << "after " << second << " s, gateway " << silence;
+      ASSERT_TRUE(online(A)) << "after " << second << " s, gateway " << silence;
+    }
+    EXPECT_FALSE(online(B));
+    EXPECT_LE(longest, 2U) << "one request is in the gateway at a time";
+    EXPECT_LE(bus_->gateway().blocked(), 0.15 * 60.0 + 7 * silence) << "probes pay for the gateway's block";
+  }
+}
+
+TEST_F(BehindAGateway, aStopGoesAtOnceAndIsConfirmedAfterTheBlock)
+{
+  start();
+  bus_->gateway().behaviour.silence = 2.2;
+  turn(A, "a");
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().blocked() > 0.0; }));
+  bus_->run(2.2);
+  const auto box = bus_->stop(A);
+  const TimePoint called = bus_->now();
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_LE(toSeconds(bus_->now() - called), 2.2 + 0.5);
+  EXPECT_TRUE(bus_->wait(box).success);
+  EXPECT_LE(bus_->gateway().deepest(), 3U);
+}
+
+TEST_F(BehindAGateway, aSlowGatewayIsNotFlooded)
+{
+  start();
+  turn(A, "a");
+  bus_->gateway().behaviour.slow = 0.38;
+  bus_->run(60.0);
+  EXPECT_LE(bus_->gateway().deepest(), 3U);
+}
+
+TEST_F(BehindAGateway, aUnitThatIsRefusedAtOnceTakesNoShareOfTheBus)
+{
+  start();
+  bus_->settleIn(20.0);
+  bus_->run(5.0);
+  bus_->clearFrames();
+  bus_->run(10.0);
+  const std::size_t before = bus_->count("01 ");
+  bus_->gateway().behaviour.refuse = { { 2, 0x0A } };
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(B).communication_error; }));
+  bus_->clearFrames();
+  bus_->run(10.0);
+  EXPECT_GE(bus_->count("01 "), before) << "the other one has the bus for itself";
+  EXPECT_EQ(bus_->status(B).error_id, wire::ERROR_TIMEOUT);
+}
+
+TEST_F(BehindAGateway, aGatewaysOwnWordForNoAnswerMakesTheDriveOffline)
+{
+  for (const int code : { 0x0B, 0xE0, 0x43 })
+  {
+    start(twoDrives("gateway_timeout: 3.0\n"));
+    bus_->gateway().behaviour.silent_code = code;
+    bus_->gateway().behaviour.silence = 0.2;
+    turn(B, "b");
+    bus_->world("b offline");
+    EXPECT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(B).communication_error; })) << code;
+    EXPECT_EQ(bus_->status(B).error_id, wire::ERROR_TIMEOUT) << code;
+    EXPECT_FALSE(bus_->status(B).monitor.output_frequency);
+  }
+}
+
+TEST_F(BehindAGateway, anIdleCloseStopsNobody)
+{
+  start(twoDrives("interval: 10.0\n"));
+  bus_->gateway().behaviour.idle_close = 2.5;
+  ASSERT_TRUE(bus_->runUntil(40.0, [&] { return online(A) && online(B); }));
+  bus_->run(10.0);
+  bus_->stream(A, 25.0, 0.5, 100.0);
+  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->motor("a", "run_coil") > 0.0; }));
+  bus_->run(1.0);
+  const std::size_t closed = bus_->gateway().closed();
+  for (int second = 0; second < 45; ++second)
+  {
+    bus_->run(1.0);
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << second;
+  }
+  EXPECT_GT(bus_->gateway().closed(), closed);
+  EXPECT_FALSE(bus_->status(A).locked);
+  EXPECT_THAT(bus_->logTexts(), Not(Contains(HasSubstr("gone"))));
+}
+
+TEST_F(BehindAGateway, aCloseInPlaceOfTheAnswerOfADeadUnitStopsNobodyElse)
+{
+  start();
+  bus_->gateway().behaviour.close_on_silence = true;
+  bus_->gateway().behaviour.silence = 0.2;
+  turn(A, "a");
+  bus_->world("b offline");
+  for (int second = 0; second < 40; ++second)
+  {
+    bus_->run(1.0);
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << second;
+    ASSERT_TRUE(online(A)) << second;
+  }
+  EXPECT_FALSE(online(B));
+  EXPECT_FALSE(bus_->status(A).locked);
+}
+
+TEST_F(BehindAGateway, aConnectionThatIsClosedAgainAndAgainIsTriedOnceInTwoSeconds)
+{
+  for (const bool at_once : { true, false })
+  {
+    start();
+    bus_->gateway().behaviour.close_at_once = at_once;
+    bus_->gateway().behaviour.close_at_first_byte = !at_once;
+    bus_->gateway().behaviour.words = "Port already in use\r\n";
+    bus_->run(20.0);
+    EXPECT_LE(bus_->gateway().connections().size(), 11U);
+    EXPECT_GE(bus_->gateway().connections().size(), 8U);
+    EXPECT_GE(bus_->busStatuses().size(), 18U) << "bus_status goes on at 1 Hz";
+    EXPECT_FALSE(bus_->busStatuses().back().connected);
+    EXPECT_THAT(bus_->logTexts(), Contains(HasSubstr("another client")));
+    EXPECT_THAT(bus_->logTexts(), Contains(HasSubstr("Port already in use")));
+    EXPECT_THAT(bus_->logTexts(), Not(Contains(HasSubstr("dmesg"))));
+    bus_->gateway().behaviour = VirtualGateway::Behaviour();
+    EXPECT_TRUE(bus_->runUntil(10.0, [&] { return online(A) && online(B); }));
+  }
+}
+
+TEST_F(BehindAGateway, aLostConnectionStopsAndLocks)
+{
+  start();
+  turn(A, "a");
+  bus_->gateway().behaviour.gone = true;
+  bus_->gateway().hangUp();
+  ASSERT_TRUE(bus_->runUntil(2.0, [&] { return bus_->status(A).communication_error; }));
+  EXPECT_EQ(bus_->status(A).error_id, wire::ERROR_PORT_LOST);
+  EXPECT_TRUE(bus_->status(A).locked);
+  bus_->run(3.0);
+  bus_->gateway().behaviour.gone = false;
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return online(A); }));
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0) << "stopped first of all";
+  bus_->run(5.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0) << "the stream that went on starts nothing";
+}
+
+TEST_F(BehindAGateway, aMuteConnectionIsOpenedAnew)
+{
+  start();
+  turn(A, "a");
+  bus_->gateway().behaviour.mute = true;
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return !online(A); }));
+  const std::size_t before = bus_->gateway().connections().size();
+  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().connections().size() > before; }));
+  EXPECT_GE(bus_->gateway().abandoned(), 1U);
+  bus_->gateway().behaviour.mute = false;
+  EXPECT_TRUE(bus_->runUntil(70.0, [&] { return online(A) && online(B); }));
+  bus_->run(3.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0) << "nothing runs again by itself";
+}
+
+TEST_F(BehindAGateway, aLateRunIsFollowedByAStopThatCounts)
+{
+  start();
+  bus_->settleIn(20.0);
+  // The gateway hangs for 1.5 s just as the RUN (coil 0000 on the wire) is its next request, and then carries it out.
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+  bus_->gateway().behaviour.hold_time = 1.5;
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
+  bus_->run(0.1);
+  const TimePoint called = bus_->now();
+  const auto box = bus_->stop(A);
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") > 0.0; })) << "the old RUN";
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_FALSE(box->has_value()) << "what went before the RUN was carried out confirms nothing";
+  EXPECT_TRUE(bus_->wait(box).success);
+  EXPECT_GT(toSeconds(bus_->now() - called), 1.3);
+  bus_->run(10.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+  EXPECT_FALSE(bus_->status(A).stop_active);
+}
+
+TEST_F(BehindAGateway, aZeroAfterALateRunInsistsLikeAStop)
+{
+  start();
+  bus_->settleIn(20.0);
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+  bus_->gateway().behaviour.hold_time = 1.5;
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
+  bus_->run(0.1);
+  bus_->command(A, 0.0);
+  bus_->run(1.0);
+  EXPECT_TRUE(bus_->status(A).locked) << "until it is confirmed";
+  bus_->run(10.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+  EXPECT_FALSE(bus_->status(A).stop_active);
+}
+
+TEST_F(BehindAGateway, aRunThatIsCarriedOutAfterItsConnectionHasEndedIsStopped)
+{
+  start();
+  bus_->settleIn(20.0);
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+  bus_->gateway().behaviour.hold_time = 2.0;
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
+  bus_->run(0.1);
+  bus_->gateway().hangUp();
+  const auto box = bus_->stop(A);
+  bus_->wait(box);
+  EXPECT_TRUE(bus_->runUntil(20.0, [&] { return !bus_->status(A).stop_active; }));
+  bus_->run(10.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
+TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)
+{
+  start();
+  turn(A, "a");
+  bus_->gateway().behaviour.silence = 1.0;
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().blocked() > 0.0; }));
+  bus_->run(1.2);
+  bus_->wait(bus_->stop(A));
+  bus_->run(2.0);
+  EXPECT_GT(bus_->busStatuses().back().stop_latency_max, 0.3);
+}
+
+TEST_F(BehindAGateway, theBlockIsNamedWithTheSettingToShorten)
+{
+  start();
+  bus_->gateway().behaviour.silence = 1.0;
+  bus_->settleIn(20.0);
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B); }));
+  bus_->run(10.0);
+  std::string text;
+  for (const bus::Finding& finding : bus_->coordinator().report(bus_->now()).findings)
+  {
+    text += finding.text + "\n";
+  }
+  EXPECT_THAT(text, HasSubstr("keeps the gateway for 1"));
+  EXPECT_THAT(text, HasSubstr("response_timeout"));
+  EXPECT_THAT(bus_->diagnostics(A), Not(HasSubstr("would have caught it"))) << "it waited behind another request";
+}
+}  // namespace
+}  // namespace inverter_bus

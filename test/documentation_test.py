@@ -74,8 +74,9 @@ class Readme(unittest.TestCase):
 
     def listed(self, name):
         """Keys that the code accepts, from its own list."""
-        body = re.search(r'(?:Keys& %s\(\)\n\{.*?Keys KEYS| %s)\{(.*?)\};' % (name, name), self.configuration,
-                         re.DOTALL).group(1)
+        function = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % name, self.configuration, re.DOTALL)
+        constant = re.search(r'%s\{(.*?)\};' % name, self.configuration, re.DOTALL)
+        body = (function or constant).group(1)
         return re.findall(r'"(\w+)"', body)
 
     def testBusParametersAreThoseOfTheCode(self):

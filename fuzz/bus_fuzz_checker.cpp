@@ -202,6 +202,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   sent_at_ = now;
   request_end_ = now + seconds(scene_.character * static_cast<double>(frame.size()));
   in_flight_ = true;
+  answered_before_ = answered_;
   answered_ = false;
   anything_heard_ = false;
   if (!facts_.inverter && !facts_.broadcast)
@@ -210,6 +211,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   }
   watchDeadMen(now);
   checkStopFirst(now);
+  checkTurn(now);
   checkMotion(now);
   checkBackground(now);
   was_probe_ = facts_.inverter && lanes_[*facts_.inverter].heard_of && !lanes_[*facts_.inverter].online;
@@ -389,7 +391,7 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
   {
     // A stop is exempt from rule 3.9: the late reply to its first frame may stand for the second one.
     const bool of_stop = lane.served != 0 && readRequest(scene_, lane.heard).stop;
-    if (of_stop && readReply(scene_, lane.heard, frame.bytes, refusal) == ReplyKind::NORMAL)
+    if (of_stop && readNoisyReply(lane.heard, frame.bytes, refusal) == ReplyKind::NORMAL)
     {
       lane.stop_replied = now;
       lane.needs_stop_reply = lane.needs_stop_reply && lane.stop_sent < lane.locked_at;
@@ -397,18 +399,25 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
     }
     return;
   }
-  ReplyKind kind = readReply(scene_, request_, frame.bytes, refusal);
-  // Noise may stand before it.
-  for (std::size_t skipped = 1; kind == ReplyKind::OTHER && skipped <= LONGEST_NOISE && skipped < frame.bytes.size();
-       ++skipped)
-  {
-    const simulation::Bytes rest(frame.bytes.begin() + static_cast<std::ptrdiff_t>(skipped), frame.bytes.end());
-    kind = readReply(scene_, request_, rest, refusal);
-  }
+  const ReplyKind kind = readNoisyReply(request_, frame.bytes, refusal);
   if (kind != ReplyKind::OTHER)
   {
     notePromptReply(now, index, kind, refusal);
   }
+}
+
+/// Noise may stand before it.
+ReplyKind Checker::readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply,
+                                  unsigned& refusal) const
+{
+  ReplyKind kind = readReply(scene_, request, reply, refusal);
+  for (std::size_t skipped = 1; kind == ReplyKind::OTHER && skipped <= LONGEST_NOISE && skipped < reply.size();
+       ++skipped)
+  {
+    const simulation::Bytes rest(reply.begin() + static_cast<std::ptrdiff_t>(skipped), reply.end());
+    kind = readReply(scene_, request, rest, refusal);
+  }
+  return kind;
 }
 
 void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal)
@@ -422,6 +431,7 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   }
   world_.drives()[index]->advance(now);
   const bool good = kind == ReplyKind::NORMAL;
+  lane.refused_at = good ? lane.refused_at : now;
   if (facts_.reads_frequency && good)
   {
     widen(index);
@@ -589,6 +599,10 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
       lane.heard_of && (lane.status.monitor.faulted.value_or(false) || lane.status.monitor.unknown_trip);
   if (status.communication_error)
   {
+    if (lane.online)
+    {
+      checkWentOffline(now, status.index);
+    }
     if (lane.online || !lane.heard_of)
     {
       probe_allowance_ += 3.0 * toSeconds(scene_.longestExchange());

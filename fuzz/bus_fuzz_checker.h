@@ -200,6 +200,7 @@ private:
     std::uint64_t served = 0;  ///< number of the request that the drive has heard last
     simulation::Bytes heard;
     TimePoint lost_at;      ///< the last exchange without an answer
+    TimePoint refused_at;   ///< the last one that was answered by a refusal
     unsigned silences = 0;  ///< exchanges in a row that it has not answered
   };
   struct Call
@@ -217,8 +218,12 @@ private:
   void checkPatience(TimePoint now);
   void endExchange(TimePoint now);
   void takeReply(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
+  ReplyKind readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply, unsigned& refusal) const;
   void notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal);
   void noteHeard(TimePoint end, std::size_t index);
+  void checkTurn(TimePoint now);
+  bool waits(TimePoint now, std::size_t index) const;
+  void checkWentOffline(TimePoint now, std::size_t index) const;
   void payProbe(TimePoint now, Duration cost);
   void checkBackground(TimePoint now);
   std::set<unsigned> settingsOf(std::size_t index) const;
@@ -270,6 +275,10 @@ private:
   // the exchange in flight, or the last one
   bool in_flight_ = false;
   std::uint64_t exchange_ = 0;
+  /// Whose the last exchange was, if it was none of a stop, and when it began.
+  std::optional<std::size_t> turn_of_;
+  TimePoint turn_began_;
+  bool answered_before_ = false;
   TimePoint sent_at_;
   TimePoint request_end_;
   simulation::Bytes request_;

@@ -28,6 +28,8 @@ constexpr double RUN_EACH_S = 1.2;  // where every drive has a time-out of its o
 constexpr double RUN_S = 4.0;
 constexpr double SHUTDOWN_S = 15.0;  // with what comes before it
 constexpr double STREAM_PERIOD_S = 0.1;
+constexpr double WAVER_HZ = 0.1;
+constexpr unsigned WAVER_STEPS = 30;
 constexpr double SPEED_TOLERANCE_HZ = 0.2;
 }  // namespace
 
@@ -197,6 +199,8 @@ void Game::beginStream(std::size_t index)
   stream.on = true;
   stream.hertz = anySpeed(index);
   stream.drift = dice_.hits(0.3) ? 0.05 : 0.0;
+  stream.wavers = false;
+  stream.grouped = false;
   stream.period = dice_.any<double>({ 0.02, 0.05, 0.1, 0.1, 0.25 });
   stream.until = world_.now() + seconds(dice_.between(0.3, 6.0));
   stream.publisher = anyPublisher();
@@ -221,15 +225,43 @@ void Game::tickStream(std::size_t index, unsigned number)
     return;
   }
   stream.hertz += stream.hertz > 0.0 ? stream.drift : -stream.drift;
+  if (stream.wavers)
+  {
+    const double lowest = world_.scene().inverters[index].lowest_hz;
+    stream.hertz = std::copysign(lowest + WAVER_HZ * (stream.sent++ % WAVER_STEPS), stream.hertz);
+  }
   if (stream.dips && limits_dice_.hits(0.15))
   {
     sendNearZero(index, stream.publisher);
   }
   else
   {
-    sendVelocity(index, stream.hertz, stream.publisher);
+    sendStream(index, stream);
   }
   world_.at(seconds(stream.period), [this, index, number] { tickStream(index, number); });
+}
+
+/// Alone, or in one message with those that waver beside it.
+void Game::sendStream(std::size_t index, const Stream& stream)
+{
+  if (!stream.grouped)
+  {
+    sendVelocity(index, stream.hertz, stream.publisher);
+    return;
+  }
+  bus::VelocityCommand command;
+  command.publisher.name = stream.publisher;
+  command.publisher.topic = "command";
+  command.grouped = true;
+  for (std::size_t one = 0; one < streams_.size(); ++one)
+  {
+    const Stream& other = streams_[one];
+    if (one == index || (other.on && other.grouped))
+    {
+      command.targets.emplace_back(one, other.hertz / world_.scene().inverters[one].hz_per_unit);
+    }
+  }
+  world_.command(command);
 }
 
 void Game::sendVelocity(std::size_t index, double hertz, const std::string& publisher)
@@ -396,13 +428,17 @@ void Game::harm()
   {
     harmDrive(anyone());
   }
-  else if (dice < 0.95)
+  else if (dice < 0.93)
   {
     harmLine();
   }
-  else
+  else if (dice < 0.97)
   {
     killSeveral();
+  }
+  else
+  {
+    failWhileItChanges();
   }
 }
 
@@ -499,6 +535,46 @@ void Game::killSeveral()
       world_.provoke(nameOf(index) + " offline " + std::to_string(duration * dice_.between(0.5, 1.0)));
     }
   }
+}
+
+/// A drive dies, or only its writes, reads or long replies do, while its own velocity changes; its neighbours are
+/// commanded as well.
+void Game::failWhileItChanges()
+{
+  const std::size_t index = anyone();
+  const double period = dice_.any<double>({ 0.01, 0.02, 0.05, 0.05, 0.1, 0.25, 1.0 });
+  const double duration = dice_.between(2.0, 6.0);
+  const bool grouped = dice_.hits(0.3);
+  for (std::size_t one = 0; one < streams_.size(); ++one)
+  {
+    if (one == index || dice_.hits(0.5))
+    {
+      beginStream(one);
+      Stream& stream = streams_[one];
+      stream.wavers = true;
+      stream.grouped = grouped;
+      stream.drift = 0.0;
+      stream.period = period;
+      stream.until = world_.now() + seconds(1.0 + duration);
+    }
+  }
+  const double dice = dice_.chance();
+  const std::string length = " for " + std::to_string(duration);
+  world_.at(seconds(dice_.between(0.2, 1.0)), [this, index, dice, duration, length] {
+    if (!acting_)
+    {
+      return;
+    }
+    if (dice < 0.4)
+    {
+      world_.cutPower(index, duration);
+      return;
+    }
+    const std::string fault = dice < 0.6   ? "lost_request writes"
+                              : dice < 0.8 ? "lost_reply reads"
+                                           : "damaged longer " + std::string(dice < 0.9 ? "9" : "12");
+    world_.provoke(nameOf(index) + " " + fault + length);
+  });
 }
 
 // --- calm --------------------------------------------------------------------------------------------------------------------
@@ -650,6 +726,8 @@ bool Game::runOne(std::size_t index)
   streaming_ = true;
   stream.on = true;
   stream.drift = 0.0;
+  stream.wavers = false;
+  stream.grouped = false;
   stream.dips = false;
   stream.period = STREAM_PERIOD_S;
   stream.until = world_.now() + seconds(100.0);

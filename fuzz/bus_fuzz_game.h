@@ -34,6 +34,9 @@ private:
     unsigned number = 0;
     double hertz = 0.0;
     double drift = 0.0;
+    bool wavers = false;  ///< changes with every message and stays in its range
+    bool grouped = false;
+    unsigned sent = 0;
     double period = 0.1;
     bool dips = false;  ///< goes near zero now and then, as a controller does
     TimePoint until;
@@ -48,6 +51,7 @@ private:
   void beginStream(std::size_t index);
   void tickStream(std::size_t index, unsigned number);
   void sendVelocity(std::size_t index, double hertz, const std::string& publisher);
+  void sendStream(std::size_t index, const Stream& stream);
   void sendNearZero(std::size_t index, const std::string& publisher);
   double nearZero(std::size_t index);
   void sendLatched(std::size_t index);
@@ -60,6 +64,7 @@ private:
   void harmDrive(std::size_t index);
   void harmLine();
   void killSeveral();
+  void failWhileItChanges();
   std::size_t anyone();
   double anySpeed(std::size_t index);
   std::string anyPublisher();

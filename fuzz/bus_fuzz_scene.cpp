@@ -25,6 +25,10 @@ constexpr double LONGEST_FRAMES = 90.0;
 constexpr double PROBE_FRAME = 24.0;    // characters
 constexpr double REPLY_SLACK_S = 0.03;  // wire::Line waits so much longer for the rest of a reply that has begun
 constexpr double PROFILE_DELAY_S = 0.01;
+constexpr double SHORTEST_BLINDNESS_S = 2.0;  // contract, 8.15
+constexpr double TURNAROUND_S = 0.012;        // of a simulated drive at most
+constexpr double USUAL_FRAMES = 24.0;         // characters of a read and its reply
+constexpr double READS_PER_REFRESH = 4.0;
 
 const char* const TECO_ENTRY =
     ", drive: teco_7200ma, confirm: [run_forward, fault_reset, frequency_scale, monitor_layout, fault_coding], "
@@ -104,7 +108,8 @@ private:
     head_ << "baud_rate: " << scene_.baud_rate << "\nretries: " << scene_.retries << "\n";
     scene_.interval = dice_.hits(0.25) ? dice_.any<double>({ 0.05, 0.3, 1.4 }) : 0.0;
     head_ << "interval: " << scene_.interval << "\n";
-    head_ << "idle_divisor: " << (dice_.hits(0.25) ? 2 + dice_.below(4) : 1) << "\n";
+    scene_.idle_divisor = static_cast<unsigned>(dice_.hits(0.25) ? 2 + dice_.below(4) : 1);
+    head_ << "idle_divisor: " << scene_.idle_divisor << "\n";
     scene_.offline_after = static_cast<unsigned>(dice_.hits(0.7) ? 3 : 1 + dice_.below(8));
     head_ << "offline_after: " << scene_.offline_after << "\n";
     response_timeout_ = scene_.compoway ? 0.25 : dice_.any<double>({ 0.05, 0.1, 0.1, 0.2 });
@@ -316,6 +321,15 @@ double Scene::longestSilence() const
 Duration Scene::longestExchange() const
 {
   return 3 * gap() + seconds(longestSilence() + PROFILE_DELAY_S + REPLY_SLACK_S + LONGEST_FRAMES * character);
+}
+
+double Scene::longestBlindness() const
+{
+  const double exchange = 3.0 * toSeconds(gap()) + TURNAROUND_S + USUAL_FRAMES * character;
+  const double refreshes = READS_PER_REFRESH * exchange * static_cast<double>(inverters.size());
+  // Commands and services alternate with refreshes.
+  return std::max(SHORTEST_BLINDNESS_S, 3.0 * idle_divisor * (interval + 2.0 * refreshes)) +
+         4.0 * toSeconds(longestExchange());
 }
 
 Duration Scene::longestProbe() const

@@ -60,6 +60,7 @@ struct Scene
   bool compoway = false;
   bool one_brand = true;  ///< every inverter has the same profile
   double interval = 0.0;  ///< [s]
+  unsigned idle_divisor = 1;
   int retries = 1;
   unsigned offline_after = 3;
   std::vector<InverterFacts> inverters;
@@ -70,6 +71,8 @@ struct Scene
   Duration longestProbe() const;
   /// [s] that a request without an answer is waited for at the most.
   double longestSilence() const;
+  /// [s] after which an inverter without a complete status is offline (contract, 8.15), with what a busy bus adds.
+  double longestBlindness() const;
   /// Silence before a request.
   Duration gap() const;
 };

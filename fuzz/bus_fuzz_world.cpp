@@ -73,6 +73,7 @@ World::World(const Scene& scene, const bus::Configuration& configuration, std::u
   , writes_(scene.inverters.size())
   , cuts_(scene.inverters.size())
 {
+  line_.setGatewayTimeout(seconds(configuration.bus.gateway_timeout));
   simulated_.setObserver([this](const simulation::FrameRecord& frame) {
     frames_.push_back(frame);
     if (frames_.size() > KEPT_FRAMES)

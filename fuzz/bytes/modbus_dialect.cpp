@@ -229,18 +229,22 @@ public:
   bool isFrame(const std::uint8_t* data, std::size_t length) const override
   {
     const std::size_t body = length - std::min(length, HEADER_SIZE);
-    return body >= 2 && body <= 254 && data[2] == 0 && data[3] == 0 && data[4] == 0 && data[5] == body;
+    const bool off_by_one = body == 3 && data[7] >= 0x80 && data[5] + 1 >= 3 && data[5] <= 4;
+    return body >= 2 && body <= 254 && data[2] == 0 && data[3] == 0 && data[4] == 0 && (data[5] == body || off_by_one);
   }
 
   Answer answerAt(const Request& request, std::size_t number, const std::uint8_t* data, std::size_t size) const override
   {
-    if (size < HEADER_SIZE || !isFrame(data, HEADER_SIZE + data[5]) || size < HEADER_SIZE + data[5] ||
-        data[0] * 256U + data[1] != number % 65536)
+    const std::size_t length = frameAt(data, size);
+    if (length < HEADER_SIZE + 2 || !mayNumber(number, data[0] * 256U + data[1]) ||
+        !mayName(request, data[HEADER_SIZE]))
     {
       return Answer();
     }
-    Answer answer = judge(request, data + HEADER_SIZE, data[5]);
-    answer.length = answer.kind == Parsed::Kind::Incomplete ? 0 : HEADER_SIZE + data[5];
+    Bytes body(data + HEADER_SIZE, data + length);
+    body[0] = request.station;
+    Answer answer = judge(request, body.data(), body.size());
+    answer.length = answer.kind == Parsed::Kind::Incomplete ? 0 : length;
     return answer;
   }
 
@@ -255,6 +259,43 @@ public:
                  static_cast<std::uint8_t>(bytes.size() / 256), static_cast<std::uint8_t>(bytes.size() % 256) };
     frame.insert(frame.end(), bytes.begin(), bytes.end());
     return frame;
+  }
+
+private:
+  /// What gateways were seen to make of the number: itself, 0, one more, its bytes exchanged.
+  static bool mayNumber(std::size_t asked, std::size_t replied)
+  {
+    const std::size_t number = asked % 65536;
+    return replied == number || replied == 0 || replied == (number + 1) % 65536 ||
+           replied == number % 256 * 256 + number / 256;
+  }
+
+  static bool mayName(const Request& request, std::uint8_t unit)
+  {
+    return unit == request.station || unit == 0 || unit == 1 || unit == 255;
+  }
+
+  static bool isHeader(const std::uint8_t* data, std::size_t size)
+  {
+    const auto zero = [&](std::size_t place) { return place >= size || data[place] == 0; };
+    return zero(2) && zero(3) && zero(4) && (size < HEADER_SIZE || (data[5] >= 2 && data[5] <= 254));
+  }
+
+  /// Length of the complete frame at the head, 0: none. The stated length of an exception may be one off.
+  static std::size_t frameAt(const std::uint8_t* data, std::size_t size)
+  {
+    if (size < HEADER_SIZE + 2 || !isHeader(data, size))
+    {
+      return 0;
+    }
+    std::size_t body = data[5];
+    if (data[7] >= 0x80 && body >= 2 && body <= 4)
+    {
+      const bool another_behind =
+          body == 2 && size > 14 && isHeader(data + 8, size - 8) && !isHeader(data + 9, size - 9);
+      body = another_behind ? 2 : 3;
+    }
+    return HEADER_SIZE + body <= size ? HEADER_SIZE + body : 0;
   }
 };
 }  // namespace

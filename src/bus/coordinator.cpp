@@ -29,6 +29,7 @@ constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
 constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
+constexpr double STATUS_WAIT_S = 0.02;
 
 /// At shutdown stops take turns: every one is written before the first of them is read back, so that no motor waits for
 /// another's confirmation; nor for one that somebody asks to be stopped again and again.
@@ -60,7 +61,8 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   for (std::size_t index = 0; index < configuration.bus.inverters.size(); ++index)
   {
     inverters_.push_back(std::make_unique<Inverter>(index, configuration.bus.inverters[index],
-                                                    configuration.drives[index], configuration.bus.offline_after));
+                                                    configuration.drives[index], configuration.bus.offline_after,
+                                                    configuration.bus.retries));
   }
   Scheduler::Settings settings;
   settings.inverters = inverters_.size();
@@ -247,8 +249,7 @@ std::optional<Coordinator::Current> Coordinator::composeBroadcast()
   const drive::Step& step = any.drive.sequence("stop")->steps.front();
   Current current;
   current.purpose = Purpose::Broadcast;
-  current.request = any.drive.write(0, step.point, step.value.value_or(0));
-  current.request.broadcast = true;
+  current.request = any.drive.broadcast(step.point, step.value.value_or(0));
   return current;
 }
 
@@ -438,13 +439,22 @@ std::optional<Write> Coordinator::nextWrite(TimePoint now, const Inverter& inver
 
 std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, const Pick& pick)
 {
-  for (const std::size_t member : scheduler_->members(pick.command))
+  std::vector<std::size_t> members = scheduler_->members(pick.command);
+  // The member whose turn it is, and if it needs no frame any more, the next one.
+  std::rotate(members.begin(), std::lower_bound(members.begin(), members.end(), pick.inverter), members.end());
+  for (const std::size_t member : members)
   {
     Inverter& inverter = *inverters_[member];
     if (const auto write = nextWrite(now, inverter))
     {
+      if (write->starts && inverter.mustBeSeenRunning())
+      {
+        scheduler_->splitOff(pick.command, member, next_command_++, now + seconds(STATUS_WAIT_S));
+        continue;
+      }
       Current current;
       current.pick = pick;
+      current.pick.inverter = member;
       current.purpose = Purpose::Velocity;
       current.inverter = member;
       current.write = *write;
@@ -555,7 +565,12 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     return stop_write || readBackSafely(inverter, current);
   }
   const TimePoint allowed = std::max(line_.mayAskAt(current.request), now + std::chrono::milliseconds(1));
-  if (current.purpose == Purpose::Velocity || current.purpose == Purpose::Job)
+  if (current.purpose == Purpose::Velocity)
+  {
+    // The other members of a group don't wait for it.
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed);
+  }
+  else if (current.purpose == Purpose::Job)
   {
     scheduler_->postpone(current.pick.command, allowed);
   }
@@ -613,6 +628,11 @@ void Coordinator::sent(TimePoint now)
   if (current_->purpose == Purpose::Velocity && !current_->resync)
   {
     inverter.movement.sent(current_->write);
+    if (current_->write.starts)
+    {
+      // The stop that follows is none of a flood.
+      inverter.stop.forgetConfirmation();
+    }
   }
   if (current_->purpose == Purpose::Broadcast)
   {

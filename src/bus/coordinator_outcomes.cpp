@@ -26,7 +26,8 @@ bool alive(const wire::Reply& reply)
 /// Lost or damaged: is it to be repeated?
 bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 {
-  if (alive(reply))
+  // A gateway that says that the drive is silent has tried itself.
+  if (alive(reply) || reply.gateway_code != 0)
   {
     tries = 0;
     return false;
@@ -80,15 +81,16 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     return;
   }
   Inverter& inverter = *inverters_[current.inverter];
-  inverter.noteExchange(reply.outcome);
+  inverter.noteExchange(reply);
   if (current.request.expects_reply)
   {
+    inverter.record.note(reply);
     noteLink(reply);
     noteConnection(reply.finished_at, current, reply);
   }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
-    log(Level::Ok, inverter.config.name + ": online");
+    log(Level::Ok, inverter.config.name + ": online", inverter.config.name);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))
@@ -133,6 +135,11 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       doneSetting(current, reply);
       break;
     default:
+      if (inverter.offline())
+      {
+        // Not the port that was gone before.
+        inverter.noteExchangeError(reply.error_id);
+      }
       finishExchange(current, reply, false);
       break;
   }
@@ -162,17 +169,30 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
   // Behind an older request that the gateway still works on it says nothing of this inverter (contract, 8.16).
   if (!behind_another_ && inverter.failed(now, error_id))
   {
-    wentOffline(now, inverter, error_id);
+    wentOffline(now, inverter);
   }
 }
 
-void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+/// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
+void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  if (!behind_another_ && inverter.failed(now, error_id, true))
+  {
+    wentOffline(now, inverter);
+  }
+  if (inverter.needsRead())
+  {
+    scheduler_->readSoon(inverter.index);
+  }
+}
+
+void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
 {
   scheduler_->eraseVelocity(inverter.index);
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id));
+    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(), inverter.config.name);
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -194,11 +214,18 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     inverter.movement.forgetWords();
     return;
   }
-  const bool wrote = !current.resync && !inverter.stop.written();
+  const bool write = !current.resync && !inverter.stop.written();
   if (reply.connection_closed && !inverter.offline())
   {
     // It counts no try: the same frame goes first over the next connection.
-    noteLost(reply.finished_at, inverter, reply.error_id);
+    if (write)
+    {
+      noteLostWrite(reply.finished_at, inverter, reply.error_id);
+    }
+    else
+    {
+      noteLost(reply.finished_at, inverter, reply.error_id);
+    }
     return;
   }
   if (gateway_.active() && alive(reply))
@@ -209,20 +236,37 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
       noteStopLatency(*latency);
     }
   }
-  if (wrote && gateway_.motionUntil(reply.sent_at, current.inverter))
+  if (write && gateway_.motionUntil(reply.sent_at, current.inverter))
   {
     inverter.stop.writeOnceMore();
     inverter.interlock.stopRequested();
     return;
   }
   const StopJob::Progress progress = inverter.stop.done(reply, current.may_be_late);
+  if (write && reply.outcome == wire::Outcome::Ok && !current.may_be_late)
+  {
+    inverter.lost_writes.acknowledged();
+  }
   if (progress == StopJob::Progress::Confirmed)
   {
     stopConfirmed(reply.finished_at, inverter);
   }
-  if (!alive(reply))
+  if (alive(reply))
+  {
+    return;
+  }
+  if (write)
+  {
+    noteLostWrite(reply.finished_at, inverter, reply.error_id);
+  }
+  else
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+  const bool too_many = write && !behind_another_ && inverter.lost_writes.lost();
+  if (too_many && !inverter.offline())
+  {
+    writesLost(reply.finished_at, inverter);
   }
 }
 
@@ -241,42 +285,86 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     {
       inverter.settings.commanded();
     }
-    inverter.velocity_tries = 0;
+    inverter.lost_writes.acknowledged();
     ++inverter.velocity_frames;
     finishVelocity(current, reply);
     return;
   }
-  inverter.movement.doubtful(current.write);
-  if (repeat(inverter.velocity_tries, reply) && !cancelled)
+  if (!current.resync)
   {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write, now);
+  }
+  const bool lost = !alive(reply);
+  // A loop-back that was lost writes nothing.
+  const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
+  const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
+  if (again && !cancelled)
+  {
+    // The other members of a group go on without it.
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now);
     finishExchange(current, reply, true);
     return;
   }
-  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
   scheduler_->eraseVelocity(current.inverter);
   finishExchange(current, reply, !scheduler_->members(current.pick.command).empty());
   if (reply.outcome == wire::Outcome::Ok)
   {
     return;
   }
+  inverter.lost_writes.velocityEnded();
+  if (lost)
+  {
+    noteLostWrite(now, inverter, reply.error_id);
+  }
   if (!cancelled)
   {
-    inverter.refuseCommand(reply.error_id, refusalText(inverter, reply.error_id));
-    inverter.movement.giveUp();
-    if (!inverter.movement.runPossible())
-    {
-      inverter.interlock.resting();
-    }
-    if (zero || current.write.starts)
-    {
-      // Nobody knows whether the motor runs: it shall not.
-      requestStop(now, inverter, StopMode::Decelerate, false, "");
-    }
+    failVelocity(current, reply, too_many);
   }
-  if (!alive(reply))
+}
+
+/// It is not sent again.
+void Coordinator::failVelocity(const Current& current, const wire::Reply& reply, bool too_many_lost)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  if (inverter.offline())
   {
-    noteLost(now, inverter, reply.error_id);
+    return;
   }
+  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
+  inverter.velocityFailed(reply.error_id, refusalText(inverter, reply.error_id));
+  inverter.movement.giveUp();
+  if (!alive(reply) && (too_many_lost || inverter.movement.runPossible()))
+  {
+    writesLost(reply.finished_at, inverter);
+    return;
+  }
+  if (!inverter.movement.runPossible())
+  {
+    inverter.interlock.resting();
+  }
+  if (zero || current.write.starts)
+  {
+    // Nobody knows whether the motor runs: it shall not.
+    requestStop(reply.finished_at, inverter, StopMode::Decelerate, false, "");
+  }
+  if (current.write.starts)
+  {
+    inverter.stop.hold();
+  }
+}
+
+/// Contract, 8.1: what can't be written to can't be commanded, however well it answers reads.
+void Coordinator::writesLost(TimePoint now, Inverter& inverter)
+{
+  const std::string text = inverter.lost_writes.text();
+  if (!inverter.lost_writes.raised())
+  {
+    log(Level::Error, inverter.config.name + ": stopping and locking: " + text);
+  }
+  inverter.lost_writes.raise();
+  inverter.velocityFailed(wire::ERROR_TIMEOUT, text);
+  requestStop(now, inverter, StopMode::Decelerate, true, "");
 }
 
 /// What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
@@ -317,6 +405,10 @@ void Coordinator::finishVelocity(const Current& current, const wire::Reply& repl
   Inverter& inverter = *inverters_[current.inverter];
   const bool complete = !inverter.movement.next();
   const bool too_long = inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  if (complete)
+  {
+    inverter.velocityConfirmed();
+  }
   if (complete || too_long)
   {
     scheduler_->eraseVelocity(current.inverter);
@@ -440,6 +532,10 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     inverter.refresh_tries = 0;
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
+    if (reply.outcome == wire::Outcome::Ok && inverter.lost_writes.readAnswered())
+    {
+      log(Level::Error, inverter.config.name + ": stopped and locked: " + inverter.lost_writes.text());
+    }
     finishExchange(current, reply, more);
     inverter.noteStatus(reply, more);
     if (more)
@@ -458,7 +554,8 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     }
     return;
   }
-  if (repeat(inverter.refresh_tries, reply))
+  // One that has lost as many writes as make a drive offline is not asked twice.
+  if (!inverter.needsRead() && repeat(inverter.refresh_tries, reply))
   {
     finishExchange(current, reply, true);
     return;
@@ -567,7 +664,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
       sign_of_life.turnaround =
           std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
-      log(Level::Ok, inverter->config.name + ": online (its reply came late)");
+      log(Level::Ok, inverter->config.name + ": online (its reply came late)", inverter->config.name);
     }
   }
 }
@@ -580,6 +677,11 @@ void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bo
   }
   counters_ = counters;
   echo_found_ = echo_found;
+}
+
+void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
+{
+  adapter_.note(latency);
 }
 
 void Coordinator::portOpened(TimePoint now)
@@ -602,7 +704,7 @@ void Coordinator::portOpened(TimePoint now)
     port_complained_ = false;
     port_error_.clear();
     last_error_ = 0;
-    log(Level::Ok, "port " + configuration_.bus.port + " is open");
+    log(Level::Ok, "port " + configuration_.bus.port + " is open", PORT);
   }
   for (const auto& inverter : inverters_)
   {
@@ -619,7 +721,7 @@ void Coordinator::portWorks()
     port_failing_ = false;
     port_complained_ = false;
     port_error_.clear();
-    log(Level::Ok, "port " + configuration_.bus.port + " works again");
+    log(Level::Ok, "port " + configuration_.bus.port + " works again", PORT);
   }
 }
 
@@ -637,7 +739,7 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
-        error + (in_use ? "; trying again for a while" : "; the node keeps trying"));
+        error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);
     portLost(now);
   }
 }
@@ -654,8 +756,10 @@ void Coordinator::portLost(TimePoint now)
                        ": another client may hold it, or it serves another protocol mode");
     return;
   }
-  portFails(now,
-            "port " + port + (unused ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone"));
+  portFails(now, "port " + port +
+                     (unused                       ? " can be opened, but fails in use: see dmesg, check the adapter"
+                      : configuration_.bus.gateway ? " is gone"
+                                                   : " is gone: plug it in"));
 }
 
 /// \p error says what is wrong with it, once.
@@ -668,7 +772,7 @@ void Coordinator::portFails(TimePoint now, const std::string& error)
   {
     port_failing_ = !port_works_ || line_.telnetFound();
     port_error_ = error;
-    log(Level::Error, port_error_ + "; the node keeps trying");
+    log(Level::Error, port_error_ + "; the node keeps trying", PORT);
     port_complained_ = true;
   }
   connected_ = false;

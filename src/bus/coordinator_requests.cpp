@@ -83,6 +83,10 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = "a parameter is being written in the drive's setup area";
     return judged.error_id;
   }
+  else if (inverter.stop.held())
+  {
+    judged.error_id = ERROR_CANCELLED;
+  }
   else
   {
     switch (inverter.interlock.judge(now, publisher))
@@ -101,6 +105,11 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     }
   }
   judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
+  if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
+  {
+    judged.text =
+        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
+  }
   return judged.error_id;
 }
 
@@ -197,8 +206,8 @@ void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, con
   {
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
-    inverters_[target.first]->refuseCommand(error_id,
-                                            one.text.empty() ? "the group was refused: " + reasons : one.text);
+    one.text.empty() ? inverters_[target.first]->refuseForOther(error_id, reasons)
+                     : inverters_[target.first]->refuseCommand(error_id, one.text);
     refusals_.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
                                                            : "the group was refused: " + reasons);
   }
@@ -280,6 +289,7 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     inverter.interlock.zeroed(now, publisher);
   }
   inverter.acceptCommand();
+  inverter.velocityConfirmed();
   refusals_.accepted(inverter.index);
   if (inverter.stop.pending())
   {
@@ -298,7 +308,6 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     return false;
   }
   inverter.movement.aim(target);
-  inverter.velocity_tries = 0;
   return inverter.movement.active();
 }
 
@@ -310,7 +319,6 @@ bool Coordinator::applyMove(TimePoint now, Inverter& inverter, const Publisher& 
   // Only the stop of a command of 0 can be pending here; the newer command takes its place.
   inverter.stop.cancel();
   inverter.movement.aim(target);
-  inverter.velocity_tries = 0;
   return inverter.movement.active();
 }
 
@@ -348,6 +356,7 @@ void Coordinator::requestStop(TimePoint now, Inverter& inverter, StopMode mode, 
   }
   if (lock)
   {
+    inverter.stop.hold();
     inverter.interlock.stopRequested();
   }
 }
@@ -408,12 +417,13 @@ bool Coordinator::broadcastIsSafe() const
   const auto stop_frame = [](const drive::Drive& drive) {
     const drive::Sequence* stop = drive.sequence("stop");
     return stop == nullptr ? wire::Bytes()
-                           : drive.write(0, stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
+                           : drive.broadcast(stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
   };
-  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() &&
+  // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
+  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() && line_.gatewayQuirk().empty() &&
          std::all_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
-           return profile.name == first.profile().name && profile.broadcast_stop &&
+           return profile.name == first.profile().name && profile.broadcast_stop && !inverter->config.ownPort() &&
                   inverter->settings.identity() == Identity::Right && stop_frame(inverter->drive) == stop_frame(first);
          });
 }

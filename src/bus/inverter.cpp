@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "inverter_bus/bus/own_exceptions.h"
 #include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
@@ -59,7 +60,8 @@ bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, doubl
 }
 }  // namespace
 
-Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after)
+Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after,
+                   int retries)
   : index(index)
   , config(config)
   , drive(drive)
@@ -68,7 +70,9 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , stop(drive, config.node)
   , refresh(drive, config.node)
   , settings(drive, config.node)
+  , lost_writes(retries, offline_after)
   , offline_after_(offline_after)
+  , exchanges_without_data_(offline_after)
 {
 }
 
@@ -80,6 +84,7 @@ bool Inverter::answered(const wire::Reply& reply)
   last_reply_ = reply.finished_at;
   ever_answered_ = true;
   failures_ = 0;
+  read_failed_ = false;
   exchange_error_ = 0;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
   probes = 0;
@@ -92,15 +97,16 @@ bool Inverter::answered(const wire::Reply& reply)
   return back;
 }
 
-bool Inverter::failed(TimePoint now, std::uint16_t error_id)
+bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
   if (now < silence_until_)
   {
     return false;
   }
   exchange_error_ = error_id;
+  read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
+  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
   if (patience || offline_)
   {
     return false;
@@ -116,14 +122,15 @@ void Inverter::goOffline(std::uint16_t error_id)
   leftover_judged_ = false;
   early_trip_ = false;
   exchange_error_ = error_id;
+  command_error_.wentOffline();
   run_shown_at_.reset();
   run_proven_ = false;
   setup_open = false;
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  interlock.offline();
   stop.forgetConfirmation();
+  interlock.offline();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -132,11 +139,18 @@ void Inverter::goOffline(std::uint16_t error_id)
   operation_off_since_.reset();
   unexpected_motion_ = false;
   reset_active = false;
+  // From now on nothing of it is answered, and that is what users are told.
+  lost_writes.lower();
 }
 
 bool Inverter::offline() const
 {
   return offline_;
+}
+
+bool Inverter::needsRead() const
+{
+  return !offline_ && failures_ >= offline_after_ && !read_failed_;
 }
 
 bool Inverter::known() const
@@ -164,6 +178,10 @@ wire::Request Inverter::prepared(wire::Request request) const
   request.response_timeout = seconds(config.response_timeout);
   request.reply_delay = settings.replyDelay();
   request.quiet_before = seconds(drive.profile().quiet_before);
+  if (config.modbus_tcp)
+  {
+    request.own_exceptions = ownExceptions(drive.profile().exceptions, exchanges_without_data_ < offline_after_);
+  }
   return request;
 }
 
@@ -254,8 +272,11 @@ void Inverter::dropBlock(const std::string& why)
   refresh.useBlock(std::nullopt);
 }
 
-void Inverter::noteExchange(wire::Outcome outcome)
+void Inverter::noteExchange(const wire::Reply& reply)
 {
+  const wire::Outcome outcome = reply.outcome;
+  gateway_code_ = reply.gateway_code;
+  exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
   run_shown_at_.reset();
   if (outcome == wire::Outcome::Ok)
   {
@@ -297,6 +318,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     return;
   }
+  exchanges_without_data_ = 0;
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
     block_note_ = "it is selected but not in effect, or the drive refuses it";
@@ -336,6 +358,11 @@ bool Inverter::mayRepeatWords(TimePoint now) const
 {
   return run_shown_at_ && now - *run_shown_at_ < seconds(RUN_EVIDENCE_S) && *run_shown_at_ >= movement.runChangedAt() &&
          movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
+}
+
+bool Inverter::mustBeSeenRunning() const
+{
+  return movement.turnLostAt() && (drive.reports("operation") || drive.reports("running"));
 }
 
 bool Inverter::mayRun() const
@@ -379,6 +406,7 @@ Duration Inverter::slowestReply() const
 void Inverter::lateReply(Duration delay)
 {
   latest_late_reply_ = std::max(latest_late_reply_, delay);
+  record.noteLate();
 }
 
 // --- judgement -------------------------------------------------------------------------------------------------------
@@ -388,6 +416,7 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  record.restart();
   ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
@@ -538,6 +567,14 @@ void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Time
   }
   at_rest_seen_ = false;
   unexpected_motion_ = false;
+  if (movement.turnLostAt() && sent_at > *movement.turnLostAt())
+  {
+    movement.seenRunning();
+    if (!*operation)
+    {
+      judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
+    }
+  }
   operation_seen_ = operation_seen_ || *operation;
   const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
@@ -584,26 +621,88 @@ InverterStatus Inverter::status(TimePoint now) const
   status.reset_active = reset_active;
   status.stop_active = stop.pending();
   status.locked = interlock.locked(now);
-  status.error_id = command_error_ != 0 ? command_error_ : exchange_error_;
-  if (status.error_id != 0)
-  {
-    status.error_text = command_error_ != 0 ? command_error_text_ : errorText(exchange_error_);
-  }
+  showError(now, status);
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
   return status;
 }
 
+Obstacles Inverter::obstacles() const
+{
+  Obstacles obstacles;
+  obstacles.offline = offline_ || unreadSinceReturn();
+  obstacles.stop_pending = interlock.stopPending();
+  obstacles.reset_active = reset_active;
+  obstacles.in_setup = inSetup();
+  obstacles.wrong_drive = !wrongDrive().empty();
+  return obstacles;
+}
+
+/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
+void Inverter::showError(TimePoint now, InverterStatus& status) const
+{
+  const bool away = status.communication_error && exchange_error_ != 0;
+  if (away && !command_error_.countsWhileOffline())
+  {
+    status.error_id = exchange_error_;
+    status.error_text = exchangeText();
+  }
+  else if (lost_writes.raised())
+  {
+    status.error_id = wire::ERROR_TIMEOUT;
+    status.error_text = lost_writes.text();
+  }
+  else if (command_error_.id() != 0)
+  {
+    Obstacles now_there = obstacles();
+    now_there.locked = interlock.locked(now);
+    status.error_id = command_error_.id();
+    status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
+  }
+  else if (velocity_error_ != 0)
+  {
+    status.error_id = velocity_error_;
+    status.error_text = "the last velocity was not carried out: " + velocity_error_text_;
+  }
+  else if (exchange_error_ != 0)
+  {
+    status.error_id = exchange_error_;
+    status.error_text = exchangeText();
+  }
+}
+
+/// In the drive's own words where it has answered.
+std::string Inverter::exchangeText() const
+{
+  const std::string text = drive.exceptionText(exchange_error_);
+  return text.empty() ? errorText(exchange_error_, gateway_code_) : text;
+}
+
+void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
+{
+  velocity_error_ = error_id;
+  velocity_error_text_ = text;
+}
+
+void Inverter::velocityConfirmed()
+{
+  velocity_error_ = 0;
+  velocity_error_text_.clear();
+}
+
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
 {
-  command_error_ = error_id;
-  command_error_text_ = text;
+  command_error_.set(error_id, text, obstacles());
+}
+
+void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons)
+{
+  command_error_.setForOther(error_id, reasons);
 }
 
 void Inverter::acceptCommand()
 {
-  command_error_ = 0;
-  command_error_text_.clear();
+  command_error_.clear();
 }
 
 void Inverter::noteExchangeError(std::uint16_t error_id)
@@ -611,14 +710,48 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
   exchange_error_ = error_id;
 }
 
-std::vector<Finding> Inverter::errors() const
+std::string Inverter::offlineReason() const
+{
+  const std::string seen = record.text(drive);
+  return exchangeText() +
+         (seen.empty() || exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
+}
+
+std::string Inverter::offlineText(TimePoint now) const
+{
+  std::string text = "offline (" + hex(exchange_error_) + " " + offlineReason() + "; last answer ";
+  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
+  return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
+}
+
+/// Before the first complete status.
+std::string Inverter::silenceText() const
+{
+  const std::string seen = record.text(drive);
+  return seen.empty() ? "has not been asked yet" : "no complete status yet: " + seen + "; " + record.advice();
+}
+
+std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
+  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+                                           "), since the port is not open: what to do about it is told of the bus" });
+    return findings;
+  }
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + errorText(exchange_error_) +
-                                           "); check supply, wiring, station number and serial settings" });
+    findings.push_back({ Level::Error, offlineText(now) });
     return findings;
+  }
+  if (lost_writes.raised())
+  {
+    findings.push_back(
+        { Level::Error,
+          lost_writes.text() + " (" + std::to_string(lost_writes.inARow()) +
+              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
+              "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
   }
   if (interlock.isFaulted())
   {
@@ -633,11 +766,11 @@ std::vector<Finding> Inverter::errors() const
 
 std::vector<Finding> Inverter::findings(TimePoint now) const
 {
-  std::vector<Finding> findings = errors();
+  std::vector<Finding> findings = errors(now);
   const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
   if (!offline_ && !known_)
   {
-    warn("has not answered yet");
+    warn(silenceText());
   }
   for (const Finding& finding : settings.findings())
   {

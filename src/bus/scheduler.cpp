@@ -17,6 +17,9 @@ constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
 constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 // Other exchanges between two frames of a stop that insists.
 constexpr std::uint64_t INSISTING_SPACING = 1;
+// A stop that was tried so often in vain leaves half of the time to the others: a drive that loses every write for hours,
+// or a wire, must not make the driver blind for its neighbours.
+constexpr unsigned STOP_ATTEMPTS_BEFORE_PATIENCE = 10;
 // Rule 3.14: the lowest class gets at least every eighth exchange.
 constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
 // A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.
@@ -44,7 +47,10 @@ std::deque<Scheduler::Ticket>::iterator Scheduler::find(CommandId id)
 
 void Scheduler::push(const WaitingCommand& command)
 {
-  Ticket ticket{ command, epoch_, ++sequence_ };
+  Ticket ticket;
+  ticket.command = command;
+  ticket.epoch = epoch_;
+  ticket.sequence = ++sequence_;
   if (command.kind == CommandKind::Velocity)
   {
     for (const std::size_t inverter : command.inverters)
@@ -52,12 +58,15 @@ void Scheduler::push(const WaitingCommand& command)
       for (const Ticket& other : tickets_)
       {
         const auto& members = other.command.inverters;
-        if (other.command.kind == CommandKind::Velocity && other.command.id != unit_ &&
-            std::find(members.begin(), members.end(), inverter) != members.end())
+        if (other.command.kind != CommandKind::Velocity ||
+            std::find(members.begin(), members.end(), inverter) == members.end())
         {
-          ticket.epoch = std::min(ticket.epoch, other.epoch);
-          ticket.sequence = std::min(ticket.sequence, other.sequence);
+          continue;
         }
+        ticket.epoch = other.begun ? ticket.epoch : std::min(ticket.epoch, other.epoch);
+        ticket.sequence = other.begun ? ticket.sequence : std::min(ticket.sequence, other.sequence);
+        // Groups that follow each other faster than a frame takes must not give the turn to the same member each time.
+        ticket.served = other.served ? other.served : ticket.served;
       }
       eraseVelocity(inverter);
     }
@@ -72,7 +81,6 @@ void Scheduler::erase(CommandId id)
   {
     tickets_.erase(found);
   }
-  endUnit(id);
 }
 
 void Scheduler::eraseVelocity(std::size_t inverter)
@@ -84,15 +92,7 @@ void Scheduler::eraseVelocity(std::size_t inverter)
     {
       members.erase(std::remove(members.begin(), members.end(), inverter), members.end());
     }
-    if (members.empty())
-    {
-      endUnit(ticket->command.id);
-      ticket = tickets_.erase(ticket);
-    }
-    else
-    {
-      ++ticket;
-    }
+    ticket = members.empty() ? tickets_.erase(ticket) : ticket + 1;
   }
 }
 
@@ -118,6 +118,23 @@ void Scheduler::postpone(CommandId id, TimePoint not_before)
   }
 }
 
+void Scheduler::splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before)
+{
+  const auto found = find(group);
+  if (found == tickets_.end() || found->command.inverters.size() == 1)
+  {
+    postpone(group, not_before);
+    return;
+  }
+  auto& members = found->command.inverters;
+  members.erase(std::remove(members.begin(), members.end(), inverter), members.end());
+  Ticket alone = *found;
+  alone.command.id = own;
+  alone.command.inverters = { inverter };
+  alone.command.not_before = not_before;
+  tickets_.push_back(alone);
+}
+
 bool Scheduler::velocityWaits(std::size_t inverter) const
 {
   return std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
@@ -134,11 +151,11 @@ std::vector<std::size_t> Scheduler::members(CommandId id) const
   return found == tickets_.end() ? std::vector<std::size_t>() : found->command.inverters;
 }
 
-void Scheduler::endUnit(CommandId id)
+void Scheduler::readSoon(std::size_t inverter)
 {
-  if (unit_ == id)
+  if (!isPutOff(inverter))
   {
-    unit_ = 0;
+    put_off_.push_back(inverter);
   }
 }
 
@@ -155,16 +172,53 @@ bool Scheduler::ready(const Ticket& ticket, TimePoint now) const
   return ticket.command.not_before <= now && !behind_stop;
 }
 
+/// The member of a velocity whose frame is next: they take turns, and nobody comes twice while another one can.
+std::size_t Scheduler::nextMember(const Ticket& ticket) const
+{
+  const auto& members = ticket.command.inverters;
+  const auto after = [&members](std::size_t inverter) {
+    const auto next = std::upper_bound(members.begin(), members.end(), inverter);
+    return next == members.end() ? members.front() : *next;
+  };
+  const std::size_t next = ticket.served ? after(*ticket.served) : members.front();
+  const bool again = next == avoided_ || (ticket.begun && next == last_inverter_);
+  return again ? after(next) : next;
+}
+
+/// Rule 3.4: a velocity that came together with one that is under way is part of what is under way.
+bool Scheduler::startsTogether(const Ticket& ticket, TimePoint now) const
+{
+  return ticket.command.kind == CommandKind::Velocity &&
+         std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& other) {
+           return other.begun && other.epoch == ticket.epoch && ready(other, now);
+         });
+}
+
+/// Units under way first, but not the inverter that had the last exchange while another one waits.
+int Scheduler::rank(const Ticket& ticket, TimePoint now, bool one_goes_on) const
+{
+  const bool again = nextMember(ticket) == last_inverter_;
+  if (ticket.begun || startsTogether(ticket, now))
+  {
+    return again ? 2 : 0;
+  }
+  return one_goes_on && again ? 3 : 1;
+}
+
 const Scheduler::Ticket* Scheduler::firstReady(TimePoint now, bool urgent_only) const
 {
-  const auto key = [](const Ticket& ticket) {
-    return std::make_tuple(!ticket.command.urgent, ticket.epoch, ticket.command.kind, ticket.command.inverters.front(),
-                           ticket.sequence);
+  const bool one_goes_on = std::any_of(tickets_.begin(), tickets_.end(), [&](const Ticket& ticket) {
+    return ticket.begun && ready(ticket, now) && nextMember(ticket) == last_inverter_;
+  });
+  const auto key = [&](const Ticket& ticket) {
+    return std::make_tuple(!ticket.command.urgent, rank(ticket, now, one_goes_on), ticket.epoch, ticket.command.kind,
+                           ticket.frames, ticket.command.inverters.front(), ticket.sequence);
   };
   const Ticket* first = nullptr;
   for (const Ticket& ticket : tickets_)
   {
-    const bool eligible = ready(ticket, now) && (ticket.command.urgent || !urgent_only);
+    const bool eligible =
+        ready(ticket, now) && (ticket.command.urgent || !urgent_only) && nextMember(ticket) != avoided_;
     if (eligible && (first == nullptr || key(ticket) < key(*first)))
     {
       first = &ticket;
@@ -182,18 +236,20 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
   {
     stop_pending_[index] = views[index].stop_pending;
   }
-  if (half_refreshed_ && views[*half_refreshed_].offline)
-  {
-    half_refreshed_.reset();
-  }
+  forgetOffline(views);
   Pick pick = gate.stops_only ? chooseBehindGateway(now, views, gate) : choose(now, views);
   if (pick.what == Pick::What::Nothing)
   {
     return pick;
   }
   ++epoch_;
+  if (pick.what == Pick::What::Command)
+  {
+    find(pick.command)->served = pick.inverter;
+  }
   // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
-  const bool goes_on = pick.what == Pick::What::Refresh && half_refreshed_ == pick.inverter;
+  const bool goes_on = pick.what == Pick::What::Refresh && std::find(half_refreshed_.begin(), half_refreshed_.end(),
+                                                                     pick.inverter) != half_refreshed_.end();
   deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
   const bool stop = pick.what == Pick::What::Stop;
   stops_in_a_row_ = stop ? stops_in_a_row_ + 1 : let_through_ ? stops_in_a_row_ : 0;
@@ -202,6 +258,16 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
     bookStop(pick, views);
   }
   return pick;
+}
+
+void Scheduler::forgetOffline(const std::vector<InverterView>& views)
+{
+  for (auto* waiting : { &half_refreshed_, &put_off_ })
+  {
+    waiting->erase(
+        std::remove_if(waiting->begin(), waiting->end(), [&](std::size_t index) { return views[index].offline; }),
+        waiting->end());
+  }
 }
 
 Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
@@ -254,32 +320,99 @@ Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterVie
 /// Everything but stops and what wants to stop.
 std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vector<InverterView>& views)
 {
-  const auto unit = find(unit_);
-  if (unit != tickets_.end() && unit->command.not_before <= now)
+  if (last_lost_)
   {
-    Pick pick;
-    pick.what = Pick::What::Command;
-    pick.command = unit_;
-    return pick;
+    // Who did not answer has no right to the next exchange, whatever it is for.
+    const auto other = chooseForAnother(now, views);
+    return other ? other : chooseInTurn(now, views);
   }
-  if (half_refreshed_ && views[*half_refreshed_].refresh_not_before <= now)
+  const auto going_on = chooseGoingOn(now, views);
+  return going_on ? going_on : chooseInTurn(now, views);
+}
+
+std::optional<Pick> Scheduler::chooseForAnother(TimePoint now, const std::vector<InverterView>& views)
+{
+  avoided_ = last_inverter_;
+  const auto other = chooseInTurn(now, views);
+  avoided_.reset();
+  return other;
+}
+
+std::optional<Pick> Scheduler::chooseGoingOn(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto unit = goOnWithUnit(now, views);
+  return unit ? unit : goOnWithRefresh(now, views);
+}
+
+/// Frames that belong together go back to back, but for another inverter's deadline, and in turns.
+std::optional<Pick> Scheduler::goOnWithUnit(TimePoint now, const std::vector<InverterView>& views)
+{
+  const bool any = std::any_of(tickets_.begin(), tickets_.end(),
+                               [&](const Ticket& ticket) { return ticket.begun && ready(ticket, now); });
+  if (!any || commands_in_a_row_ > 0)
   {
-    // The words of one status belong together.
-    Pick pick;
-    pick.what = Pick::What::Refresh;
-    pick.inverter = *half_refreshed_;
-    return pick;
+    return std::nullopt;
   }
-  // Time-outs that can't be met must not take the bus from everything else.
+  avoided_ = last_inverter_;
+  const auto deadline = deadlines_in_a_row_ == 0 ? pickDeadline(now, views) : std::nullopt;
+  avoided_.reset();
+  if (deadline)
+  {
+    return deadline;
+  }
+  const auto command = pickCommand(now, false);
+  const bool another_one = command && command->command != last_command_;
+  return another_one && backgroundIsDue(views) ? std::nullopt : command;
+}
+
+/// The words of one status belong together.
+std::optional<Pick> Scheduler::goOnWithRefresh(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto half = std::find_if(half_refreshed_.begin(), half_refreshed_.end(),
+                                 [&](std::size_t index) { return views[index].refresh_not_before <= now; });
+  if (half == half_refreshed_.end())
+  {
+    return std::nullopt;
+  }
+  if (*half == last_inverter_)
+  {
+    avoided_ = last_inverter_;
+    auto other = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
+    other = other ? other : pickCommand(now, false);
+    avoided_.reset();
+    if (other)
+    {
+      return other;
+    }
+  }
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *half;
+  return pick;
+}
+
+/// Time-outs that can't be met must not take the bus from everything else.
+bool Scheduler::deadlinesMayGo(const std::vector<InverterView>& views) const
+{
   const auto supervised = static_cast<unsigned>(std::count_if(
       views.begin(), views.end(), [](const InverterView& view) { return view.serve_by && !view.offline; }));
-  const auto deadline = deadlines_in_a_row_ < supervised ? pickDeadline(now, views) : std::nullopt;
+  return deadlines_in_a_row_ < supervised;
+}
+
+bool Scheduler::backgroundIsDue(const std::vector<InverterView>& views) const
+{
+  return exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND && pickBackground(views);
+}
+
+std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto deadline = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
   if (deadline)
   {
     return deadline;
   }
   const auto background = pickBackground(views);
-  if (background && exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND)
+  if (backgroundIsDue(views))
   {
     return background;
   }
@@ -290,8 +423,12 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
   }
   if (auto command = pickCommand(now, false))
   {
+    // A stop that insists between any two of them makes each one wait for long: then a lone command has company, too.
+    const bool insisted = std::any_of(views.begin(), views.end(), [](const InverterView& view) {
+      return view.stop_pending && !view.offline && view.stop_attempts >= STOP_ATTEMPTS_AT_ONCE;
+    });
     const bool give_way =
-        commands_in_a_row_ > 0 && (readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
+        commands_in_a_row_ > 0 && (insisted || readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
     if (give_way && probe)
     {
       return probe;
@@ -309,7 +446,7 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
 
 std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const
 {
-  using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
+  using Key = std::tuple<bool, bool, unsigned, bool, std::uint64_t, std::size_t>;
   std::optional<Key> best;
   for (std::size_t index = 0; index < views.size(); ++index)
   {
@@ -317,12 +454,15 @@ std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<Inverte
     // An offline inverter's stop is tried once at once; then it is that inverter's probe.
     const bool at_once = view.offline ? view.stop_attempts == 0 : view.stop_attempts < STOP_ATTEMPTS_AT_ONCE;
     const bool spaced = exchanges_ - last_insisting_exchange_ >= INSISTING_SPACING || last_insisting_exchange_ == 0;
-    const bool insisting = !view.offline && (spaced || nothing_else);
+    const bool patient = view.stop_attempts >= STOP_ATTEMPTS_BEFORE_PATIENCE && now < patient_until_;
+    const bool insisting = !view.offline && ((spaced && !patient) || nothing_else);
     if (!view.stop_pending || view.stop_not_before > now || !(at_once || insisting))
     {
       continue;
     }
-    const Key key(view.offline, view.stop_attempts, view.stop_written, last_stop_exchange_[index], index);
+    // One of a flood goes behind those that take RUN off, and behind their read-backs.
+    const Key key(view.offline, view.stop_repeats, view.stop_attempts, view.stop_written, last_stop_exchange_[index],
+                  index);
     if (!best || key < *best)
     {
       best = key;
@@ -334,7 +474,7 @@ std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<Inverte
   }
   Pick pick;
   pick.what = Pick::What::Stop;
-  pick.inverter = std::get<4>(*best);
+  pick.inverter = std::get<5>(*best);
   pick.probe = std::get<0>(*best);
   return pick;
 }
@@ -358,6 +498,7 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
   Pick pick;
   pick.what = Pick::What::Command;
   pick.command = ticket->command.id;
+  pick.inverter = nextMember(*ticket);
   return pick;
 }
 
@@ -373,7 +514,7 @@ std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<Inv
   {
     const InverterView& view = views[index];
     const bool due = view.serve_by && *view.serve_by <= now && view.refresh_not_before <= now;
-    if (view.offline || !due || view.refresh_unanswered)
+    if (index == avoided_ || view.offline || !due || view.refresh_unanswered)
     {
       continue;
     }
@@ -403,7 +544,7 @@ std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<Invert
   for (std::size_t step = 0; step < views.size(); ++step)
   {
     const std::size_t index = (probe_cursor_ + step) % views.size();
-    if (mayProbe(now, views[index], index))
+    if (index != avoided_ && mayProbe(now, views[index], index))
     {
       Pick pick;
       pick.what = views[index].stop_pending ? Pick::What::Stop : Pick::What::Probe;
@@ -427,16 +568,27 @@ bool Scheduler::takesPart(const InverterView& view) const
   return !view.offline && (!view.at_rest || rounds_ % settings_.idle_divisor == 0);
 }
 
-bool Scheduler::findNextOfCycle(TimePoint now, const std::vector<InverterView>& views)
+bool Scheduler::isPutOff(std::size_t inverter) const
+{
+  return std::find(put_off_.begin(), put_off_.end(), inverter) != put_off_.end();
+}
+
+/// Whose turn it is in the open cycle; nobody: it is over.
+std::optional<std::size_t> Scheduler::nextOfCycle(TimePoint now, const std::vector<InverterView>& views)
 {
   for (; cursor_ < views.size(); ++cursor_)
   {
-    if (takesPart(views[cursor_]) && views[cursor_].refresh_not_before <= now)
+    if (!takesPart(views[cursor_]) || views[cursor_].refresh_not_before > now || isPutOff(cursor_))
     {
-      return true;
+      continue;
     }
+    if (cursor_ != avoided_)
+    {
+      return cursor_;
+    }
+    put_off_.push_back(cursor_);
   }
-  return false;
+  return std::nullopt;
 }
 
 void Scheduler::closeCycle(TimePoint now)
@@ -453,6 +605,30 @@ void Scheduler::closeCycle(TimePoint now)
 
 std::optional<Pick> Scheduler::pickRefresh(TimePoint now, const std::vector<InverterView>& views)
 {
+  const auto of_cycle = cycle_first_ ? pickOfCycle(now, views) : std::nullopt;
+  const auto put_off = of_cycle ? of_cycle : pickPutOff(now, views);
+  return put_off || cycle_first_ ? put_off : pickOfCycle(now, views);
+}
+
+std::optional<Pick> Scheduler::pickPutOff(TimePoint now, const std::vector<InverterView>& views) const
+{
+  const auto put_off = std::find_if(put_off_.begin(), put_off_.end(), [&](std::size_t index) {
+    return index != avoided_ && views[index].refresh_not_before <= now;
+  });
+  if (put_off == put_off_.end())
+  {
+    return std::nullopt;
+  }
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *put_off;
+  return pick;
+}
+
+std::optional<Pick> Scheduler::pickOfCycle(TimePoint now, const std::vector<InverterView>& views)
+{
+  Pick pick;
+  pick.what = Pick::What::Refresh;
   // One round more than the divisor, so that a cycle without anybody cannot hide those at rest.
   for (unsigned round = 0; round <= settings_.idle_divisor; ++round)
   {
@@ -467,11 +643,9 @@ std::optional<Pick> Scheduler::pickRefresh(TimePoint now, const std::vector<Inve
       refreshed_in_cycle_ = false;
       cursor_ = 0;
     }
-    if (findNextOfCycle(now, views))
+    if (const auto next = nextOfCycle(now, views))
     {
-      Pick pick;
-      pick.what = Pick::What::Refresh;
-      pick.inverter = cursor_;
+      pick.inverter = *next;
       return pick;
     }
     closeCycle(now);
@@ -484,7 +658,7 @@ std::optional<Pick> Scheduler::pickBackground(const std::vector<InverterView>& v
   for (std::size_t step = 0; step < views.size(); ++step)
   {
     const std::size_t index = (background_cursor_ + step) % views.size();
-    if (views[index].background && !views[index].offline)
+    if (index != avoided_ && views[index].background && !views[index].offline)
     {
       Pick pick;
       pick.what = Pick::What::Background;
@@ -535,30 +709,20 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
     last_probe_[pick.inverter] = end;
     chargeProbe(end, answered ? Duration::zero() : end - start);
   }
+  last_inverter_ = pick.what == Pick::What::Stop ? std::nullopt : std::optional<std::size_t>(pick.inverter);
+  last_lost_ = last_inverter_ && !answered;
+  if (pick.what == Pick::What::Stop)
+  {
+    patient_until_ = answered ? end : end + (end - start);
+  }
+  last_command_ = pick.what == Pick::What::Command ? pick.command : 0;
   switch (pick.what)
   {
     case Pick::What::Command:
-    {
-      const auto ticket = find(pick.command);
-      if (ticket != tickets_.end() && more)
-      {
-        unit_ = ticket->command.kind == CommandKind::Velocity ? pick.command : unit_;
-        break;
-      }
-      ++commands_in_a_row_;
-      erase(pick.command);
+      doneCommand(pick, more);
       break;
-    }
     case Pick::What::Refresh:
-      commands_in_a_row_ = 0;
-      if (cycle_open_ && pick.inverter == cursor_)
-      {
-        refreshed_in_cycle_ = true;
-        cursor_ += more ? 0 : 1;
-      }
-      silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
-      // A repeat has no right to the next exchange: another drive's time may come meanwhile.
-      noteHalfRefresh(pick, more && answered);
+      doneRefresh(pick, more, answered);
       break;
     case Pick::What::Background:
       exchanges_without_background_ = 0;
@@ -574,16 +738,53 @@ void Scheduler::chargeProbe(TimePoint now, Duration cost)
   next_probe_ = now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
 }
 
+void Scheduler::doneCommand(const Pick& pick, bool more)
+{
+  const auto ticket = find(pick.command);
+  if (ticket == tickets_.end() || !more)
+  {
+    ++commands_in_a_row_;
+    erase(pick.command);
+    return;
+  }
+  ticket->begun = ticket->command.kind == CommandKind::Velocity;
+  ticket->served = pick.inverter;
+  ++ticket->frames;
+}
+
+void Scheduler::doneRefresh(const Pick& pick, bool more, bool answered)
+{
+  commands_in_a_row_ = 0;
+  silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
+  const bool was_put_off = isPutOff(pick.inverter);
+  put_off_.erase(std::remove(put_off_.begin(), put_off_.end(), pick.inverter), put_off_.end());
+  cycle_first_ = was_put_off && !(more && answered);
+  const bool in_turn = cycle_open_ && pick.inverter == cursor_;
+  refreshed_in_cycle_ = refreshed_in_cycle_ || in_turn;
+  if (more && answered && was_put_off)
+  {
+    put_off_.push_front(pick.inverter);
+  }
+  else if (more && !answered && (in_turn || was_put_off))
+  {
+    put_off_.push_back(pick.inverter);
+  }
+  cursor_ += in_turn && !(more && answered) ? 1 : 0;
+  // A repeat has no right to the next exchange: another drive's time may come meanwhile.
+  noteHalfRefresh(pick, more && answered);
+}
+
 void Scheduler::noteHalfRefresh(const Pick& pick, bool more)
 {
-  const bool by_deadline = pick.deadline || half_refreshed_ == pick.inverter;
-  if (more && by_deadline)
+  const auto half = std::find(half_refreshed_.begin(), half_refreshed_.end(), pick.inverter);
+  const bool was_half = half != half_refreshed_.end();
+  if (more && pick.deadline && !was_half)
   {
-    half_refreshed_ = pick.inverter;
+    half_refreshed_.push_back(pick.inverter);
   }
-  else
+  if (!more && was_half)
   {
-    half_refreshed_.reset();
+    half_refreshed_.erase(half);
   }
 }
 

@@ -199,9 +199,20 @@ bool StopJob::wantsClearLine() const
   return wants_clear_line_;
 }
 
+void StopJob::hold()
+{
+  held_ = pending_;
+}
+
+bool StopJob::held() const
+{
+  return held_;
+}
+
 void StopJob::confirm()
 {
   pending_ = false;
+  held_ = false;
   step_ = 0;
   attempts_ = 0;
   acknowledged_in_doubt_ = false;

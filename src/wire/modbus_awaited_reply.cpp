@@ -34,6 +34,12 @@ AwaitedReply::AwaitedReply(const Request& request, std::size_t checksum_length)
 {
 }
 
+AwaitedReply::AwaitedReply(const Request& request, std::uint8_t station, std::size_t checksum_length)
+  : AwaitedReply(request, checksum_length)
+{
+  head_[0] = station;
+}
+
 Match AwaitedReply::match(const std::uint8_t* data, std::size_t size) const
 {
   if (data[0] != head_[0] || head_.size() < 2)

@@ -33,8 +33,9 @@ bool isWhole(Match match);
 class AwaitedReply
 {
 public:
-  /// \p checksum_length CRC_LENGTH, or 0 where something else protects the frame.
+  /// \p checksum_length CRC_LENGTH, or 0 where something else protects the frame. \p station the one that the reply bears, if it is not that of the request.
   AwaitedReply(const Request& request, std::size_t checksum_length);
+  AwaitedReply(const Request& request, std::uint8_t station, std::size_t checksum_length);
 
   /// \p size at least 1.
   Match match(const std::uint8_t* data, std::size_t size) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "inverter_bus/wire/gateway_record.h"
 #include "inverter_bus/wire/protocol.h"
 #include "modbus_awaited_reply.h"
 #include "modbus_frames.h"
@@ -20,8 +21,12 @@ using modbus::Match;
 constexpr std::size_t HEADER_LENGTH = 6;
 /// Unit and function.
 constexpr std::size_t SHORTEST_BODY = 2;
+/// Unit, function and code of an exception.
+constexpr std::size_t EXCEPTION_BODY = 3;
 /// Unit and the longest PDU.
 constexpr std::size_t LONGEST_BODY = modbus::LONGEST_FRAME - modbus::CRC_LENGTH;
+/// Numbers run from 1 to this: one that a gateway has put to 0 differs from all of them.
+constexpr std::uint64_t HIGHEST_NUMBER = 0xFFFF;
 /// Numbers that the last requests had: a frame with one of them is late, with any other it is none of ours.
 constexpr std::uint64_t REMEMBERED_NUMBERS = 1000;
 /// Silences of 3.5 characters on the line behind: before the request, before the reply and after it.
@@ -59,14 +64,32 @@ Parsed wholeFrame(const std::uint8_t* data, std::size_t length)
   return parsed;
 }
 
+/// Length of the body of the frame at \p data, the header at least. Some gateways count one byte too many or too few in
+/// exceptions.
+std::size_t bodyLength(const std::uint8_t* data, std::size_t size)
+{
+  const std::size_t stated = word(data + 4);
+  const bool exception = size > HEADER_LENGTH + 1 && (data[HEADER_LENGTH + 1] & modbus::EXCEPTION_FLAG) != 0;
+  if (!exception || stated + 1 < EXCEPTION_BODY || stated > EXCEPTION_BODY + 1)
+  {
+    return stated;
+  }
+  // Unless it really has no code: the next frame must not be swallowed.
+  const std::size_t end = HEADER_LENGTH + stated;
+  const bool ends_there = stated < EXCEPTION_BODY && size > end + HEADER_LENGTH &&
+                          mayBeHeader(data + end, size - end) && !mayBeHeader(data + end + 1, size - end - 1);
+  return ends_there ? stated : EXCEPTION_BODY;
+}
+
 /// What is there of a frame's body to the awaited reply.
 Match matchBody(const Request& request, const std::uint8_t* data, std::size_t size, std::size_t body_length)
 {
-  if (size <= HEADER_LENGTH)
+  const std::uint8_t unit = data[HEADER_LENGTH];
+  if (unitHabit(request.station, unit) == UnitHabit::None)
   {
     return Match::None;
   }
-  const AwaitedReply awaited(request, 0);
+  const AwaitedReply awaited(request, unit, 0);
   const Match match = awaited.match(data + HEADER_LENGTH, std::min(size - HEADER_LENGTH, body_length));
   return modbus::isWhole(match) && awaited.length(match) != body_length ? Match::None : match;
 }
@@ -78,7 +101,7 @@ public:
   {
     ++framed_;
     const std::size_t body_length = 1 + request.pdu.size();
-    Bytes frame = header(lastTransaction(), body_length);
+    Bytes frame = header(lastNumber(), body_length);
     frame.push_back(request.broadcast ? std::uint8_t{ 0 } : request.station);
     frame.insert(frame.end(), request.pdu.begin(), request.pdu.end());
     return frame;
@@ -98,8 +121,9 @@ public:
     {
       return parsed;
     }
-    const std::size_t body_length = word(data + 4);
-    const bool awaited = request != nullptr && !request->broadcast && word(data) == lastTransaction();
+    const std::size_t body_length = bodyLength(data, size);
+    const bool waiting = request != nullptr && !request->broadcast;
+    const bool awaited = waiting && numberHabit(lastNumber(), word(data)) != NumberHabit::None;
     const Match match = awaited ? matchBody(*request, data, size, body_length) : Match::None;
     if (size < HEADER_LENGTH + body_length)
     {
@@ -107,7 +131,7 @@ public:
       return parsed;
     }
     parsed = wholeFrame(data, HEADER_LENGTH + body_length);
-    parsed.kind = awaited ? kindOfMatch(match) : kindOfUnasked(parsed.transaction);
+    parsed.kind = modbus::isWhole(match) ? kindOfMatch(match) : kindOfUnasked(parsed.transaction, waiting);
     return parsed;
   }
 
@@ -123,12 +147,19 @@ public:
 
   std::string shape(const Request& request) const override
   {
-    return shapeOf(static_cast<std::uint16_t>(lastTransaction() + 1), request.station);
+    const Bytes head = modbus::replyHead(request);
+    return std::string(head.begin() + 1, head.end());
   }
 
   std::string shapeOfReply(const Parsed& reply) const override
   {
-    return shapeOf(reply.transaction, reply.station);
+    const Bytes shape = modbus::replyShape(reply.station, reply.pdu);
+    return shape.empty() ? std::string() : std::string(shape.begin() + 1, shape.end());
+  }
+
+  std::uint16_t lastNumber() const override
+  {
+    return framed_ == 0 ? std::uint16_t{ 0 } : static_cast<std::uint16_t>((framed_ - 1) % HIGHEST_NUMBER + 1);
   }
 
   double gapCharacters() const override
@@ -142,36 +173,20 @@ public:
   }
 
 private:
-  static std::string shapeOf(std::uint16_t transaction, std::uint8_t station)
-  {
-    return { static_cast<char>(transaction >> 8), static_cast<char>(transaction & 0xFF), static_cast<char>(station) };
-  }
-
   static Parsed::Kind kindOfMatch(Match match)
   {
-    switch (match)
-    {
-      case Match::Reply:
-        return Parsed::Kind::Reply;
-      case Match::Exception:
-        return Parsed::Kind::Exception;
-      default:
-        return Parsed::Kind::Foreign;
-    }
+    return match == Match::Reply ? Parsed::Kind::Reply : Parsed::Kind::Exception;
   }
 
-  Parsed::Kind kindOfUnasked(std::uint16_t transaction) const
+  /// A frame that is not the awaited reply by its content. \p waiting a request waits for one.
+  Parsed::Kind kindOfUnasked(std::uint16_t number, bool waiting) const
   {
-    const auto back = static_cast<std::uint16_t>(lastTransaction() - transaction);
-    return back < std::min(framed_, REMEMBERED_NUMBERS) ? Parsed::Kind::Late : Parsed::Kind::Foreign;
+    const std::uint64_t back = (lastNumber() + HIGHEST_NUMBER - number) % HIGHEST_NUMBER;
+    const bool ours = number != 0 && back >= (waiting ? 1U : 0U) && back < std::min(framed_, REMEMBERED_NUMBERS);
+    return ours ? Parsed::Kind::Late : Parsed::Kind::Foreign;
   }
 
-  std::uint16_t lastTransaction() const
-  {
-    return static_cast<std::uint16_t>(framed_ & 0xFFFF);
-  }
-
-  /// Requests so far: the last one's transaction number, but for its overflow.
+  /// Requests so far.
   std::uint64_t framed_ = 0;
 };
 }  // namespace

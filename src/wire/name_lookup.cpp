@@ -38,6 +38,11 @@ std::vector<std::string> NameLookup::find(TimePoint deadline, std::string& error
   return std::move(found.addresses);
 }
 
+bool NameLookup::goesOn() const
+{
+  return pending_.valid();
+}
+
 bool NameLookup::start(std::string& error)
 {
   try

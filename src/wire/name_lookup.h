@@ -24,6 +24,9 @@ public:
   /// none. A look-up that is not over by then goes on, and the next call takes its result.
   std::vector<std::string> find(TimePoint deadline, std::string& error);
 
+  /// A look-up has not ended, or its result has not been taken.
+  bool goesOn() const;
+
 private:
   struct Found
   {

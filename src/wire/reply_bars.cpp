@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/wire/reply_bars.h"
 
+#include <algorithm>
 #include <iterator>
 
 namespace inverter_bus
@@ -46,6 +47,11 @@ bool ReplyBars::mayBeLate(const std::string& shape, TimePoint now) const
     ++bar;
   }
   return bar != bars_.end() && beginsWith(bar->first, shape);
+}
+
+bool ReplyBars::owes(TimePoint now) const
+{
+  return std::any_of(bars_.begin(), bars_.end(), [now](const Bars::value_type& bar) { return bar.second.until > now; });
 }
 
 std::optional<ReplyBars::Late> ReplyBars::take(const std::string& shape, TimePoint now)

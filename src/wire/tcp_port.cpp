@@ -18,8 +18,8 @@
 #include <cerrno>
 #include <utility>
 
-#include "name_lookup.h"
 #include "poll_descriptor.h"
+#include "tcp_connector.h"
 
 namespace inverter_bus
 {
@@ -30,32 +30,8 @@ namespace
 using boost::asio::ip::tcp;
 
 constexpr std::size_t READ_SIZE = 512;
-/// Longest that open() takes. The bus has nothing else to do meanwhile but to end.
-constexpr std::chrono::seconds LONGEST_OPENING{ 1 };
 /// Without an acknowledgement or room for the frame for so long the other side is gone.
 constexpr std::chrono::milliseconds LONGEST_SENDING{ 1000 };
-/// Probes of a silent connection, in seconds: it is given up after about 5 s.
-constexpr int KEEPALIVE_IDLE_S = 2;
-constexpr int KEEPALIVE_INTERVAL_S = 1;
-constexpr int KEEPALIVE_PROBES = 3;
-
-/// A system that lacks an option does without it.
-void setOption(int socket, int level, int option, int value)
-{
-  ::setsockopt(socket, level, option, &value, sizeof(value));
-}
-
-void configureSocket(int socket)
-{
-  setOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  setOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
-  setOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, KEEPALIVE_IDLE_S);
-  setOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, KEEPALIVE_INTERVAL_S);
-  setOption(socket, IPPROTO_TCP, TCP_KEEPCNT, KEEPALIVE_PROBES);
-  // Otherwise what was sent into a dead network would be repeated for a quarter of an hour, and an old RUN would arrive
-  // when the network is back.
-  setOption(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(LONGEST_SENDING.count()));
-}
 
 /// True if the other side has not acknowledged all that was sent.
 bool hasUnsent(int socket)
@@ -64,19 +40,18 @@ bool hasUnsent(int socket)
   return ::ioctl(socket, SIOCOUTQ, &bytes) == 0 && bytes > 0;
 }
 
-/// Why connect(2) failed in the background; 0 if it has not.
-int errorOf(int socket)
+/// The peer may hold back the rest of a reply until the first part is acknowledged (Nagle), and the system holds back
+/// acknowledgements for 40 ms unless told otherwise, again and again: the option does not last (tcp(7)).
+void acknowledgeAtOnce(int socket)
 {
-  int error = 0;
-  socklen_t size = sizeof(error);
-  return ::getsockopt(socket, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
+  setOption(socket, IPPROTO_TCP, TCP_QUICKACK, 1);
 }
 
 class TcpPort : public Port
 {
 public:
   TcpPort(const TcpAddress& address, std::string name, NameResolver resolver)
-    : address_(address), name_(std::move(name)), lookup_(address.host, std::move(resolver)), socket_(context_)
+    : name_(std::move(name)), connector_(address, std::move(resolver)), socket_(context_)
   {
   }
 
@@ -90,28 +65,23 @@ public:
 
   OpenResult open(std::string& error) override
   {
-    close();
-    const TimePoint deadline = std::chrono::steady_clock::now() + LONGEST_OPENING;
-    std::string reason;
-    const std::vector<std::string> addresses = lookup_.find(deadline, reason);
-    reason = addresses.empty() && reason.empty() ? "its name has no address" : reason;
-    for (std::size_t i = 0; i < addresses.size(); ++i)
+    if (!connector_.active())
     {
-      // One that does not answer leaves time for the others.
-      const TimePoint now = std::chrono::steady_clock::now();
-      const auto left = static_cast<int>(addresses.size() - i);
-      reason = connect(addresses[i], now + (deadline - now) / left);
-      if (reason.empty())
-      {
-        return OpenResult::Opened;
-      }
+      close();
     }
-    error = "cannot connect to " + name_ + ": " + reason;
-    return OpenResult::NotThere;
+    std::string reason;
+    const TcpConnector::Progress progress = connector_.step(socket_, reason);
+    if (progress == TcpConnector::Progress::Failed)
+    {
+      error = "cannot connect to " + name_ + ": " + reason;
+      return OpenResult::NotThere;
+    }
+    return progress == TcpConnector::Progress::Connected ? OpenResult::Opened : OpenResult::Pending;
   }
 
   void close() override
   {
+    connector_.cancel();
     if (!socket_.is_open())
     {
       return;
@@ -138,7 +108,7 @@ public:
 
   bool isOpen() const override
   {
-    return socket_.is_open();
+    return socket_.is_open() && !connector_.active();
   }
 
   Loss lastLoss() const override
@@ -160,7 +130,7 @@ public:
   {
     const TimePoint deadline = std::chrono::steady_clock::now() + LONGEST_SENDING;
     std::size_t sent = 0;
-    while (socket_.is_open() && sent < frame.size() && waitUntilWritable(socket_.native_handle(), deadline))
+    while (isOpen() && sent < frame.size() && waitUntilWritable(socket_.native_handle(), deadline))
     {
       // Asio sends with MSG_NOSIGNAL: no SIGPIPE.
       boost::system::error_code failure;
@@ -171,19 +141,20 @@ public:
         return false;
       }
     }
-    const bool done = socket_.is_open() && sent == frame.size();
-    if (!done && socket_.is_open())
+    const bool done = isOpen() && sent == frame.size();
+    if (!done && isOpen())
     {
       // No room until the deadline: 0. Otherwise why it has hung up.
-      last_loss_ = lossBy({ errorOf(socket_.native_handle()), boost::system::system_category() });
+      last_loss_ = lossBy({ socketError(socket_.native_handle()), boost::system::system_category() });
     }
     return done;
   }
 
   ReceiveResult receive(Bytes& buffer, TimePoint deadline) override
   {
-    while (socket_.is_open())
+    while (isOpen())
     {
+      acknowledgeAtOnce(socket_.native_handle());
       const DescriptorState state = pollDescriptor(socket_.native_handle(), POLLIN, deadline);
       if (state == DescriptorState::Silent)
       {
@@ -218,66 +189,19 @@ private:
     return by_peer ? Loss::ClosedByPeer : Loss::Gone;
   }
 
-  /// Returns what went wrong; empty if nothing did.
-  std::string connect(const std::string& address, TimePoint deadline)
-  {
-    boost::system::error_code failure;
-    const tcp::endpoint endpoint(boost::asio::ip::make_address(address, failure), address_.port);
-    if (!failure)
-    {
-      socket_.open(endpoint.protocol(), failure);
-    }
-    if (!failure)
-    {
-      socket_.non_blocking(true, failure);
-    }
-    if (!failure)
-    {
-      configureSocket(socket_.native_handle());
-      failure = call(endpoint, deadline);
-    }
-    if (failure)
-    {
-      close();
-    }
-    return failure ? failure.message() : "";
-  }
-
-  /// As connect(2), until \p deadline. Not by Asio, whose connect waits as long as the system does.
-  boost::system::error_code call(const tcp::endpoint& endpoint, TimePoint deadline)
-  {
-    const int socket = socket_.native_handle();
-    if (::connect(socket, endpoint.data(), static_cast<socklen_t>(endpoint.size())) != 0 && errno != EINPROGRESS)
-    {
-      return { errno, boost::system::system_category() };
-    }
-    if (pollDescriptor(socket, POLLOUT, deadline) == DescriptorState::Silent)
-    {
-      return boost::asio::error::timed_out;
-    }
-    const int refused = errorOf(socket);
-    if (refused != 0)
-    {
-      return { refused, boost::system::system_category() };
-    }
-    boost::system::error_code failure;
-    // TCP lets a socket call itself where nobody listens on a port of this host.
-    const bool itself = socket_.local_endpoint(failure) == endpoint;
-    return itself ? boost::asio::error::connection_refused : failure;
-  }
-
   /// Appends what is there to \p buffer and returns how much that was.
   std::size_t readInto(Bytes& buffer, boost::system::error_code& failure)
   {
     std::array<std::uint8_t, READ_SIZE> bytes;
     const std::size_t count = socket_.read_some(boost::asio::buffer(bytes), failure);
     buffer.insert(buffer.end(), bytes.begin(), bytes.begin() + count);
+    // Taking bytes can switch it off again.
+    acknowledgeAtOnce(socket_.native_handle());
     return count;
   }
 
-  TcpAddress address_;
   std::string name_;
-  NameLookup lookup_;
+  TcpConnector connector_;
   boost::asio::io_context context_;
   tcp::socket socket_;
   Loss last_loss_ = Loss::Gone;

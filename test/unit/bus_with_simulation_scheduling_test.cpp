@@ -50,8 +50,9 @@ TEST(Scheduling, aGroupGoesBackToBackInNodeOrder)
       heads.push_back(head(request));
     }
   }
-  const std::vector<std::string> expected{ "01 10", "01 05", "01 05", "02 10", "02 05",
-                                           "02 05", "03 10", "03 05", "03 05" };
+  // Each of them waits while another one has its frame: they take turns (8.1), and nothing else comes between.
+  const std::vector<std::string> expected{ "01 10", "02 10", "03 10", "01 05", "02 05",
+                                           "03 05", "01 05", "02 05", "03 05" };
   EXPECT_EQ(heads, expected);
 }
 
@@ -178,7 +179,8 @@ TEST(Scheduling, commandsOfOneExchangeGoKindByKindInNodeOrder)
 {
   VirtualBus bus(belts(3));
   bus.settleIn();
-  bus.run(0.01);
+  // The drives' settings have been read, too.
+  bus.run(3.0);
   bus.clearFrames();
   for (const std::size_t index : { 2, 0, 1 })
   {
@@ -202,8 +204,16 @@ TEST(Scheduling, commandsOfOneExchangeGoKindByKindInNodeOrder)
       }
     }
   }
-  const std::vector<std::string> expected{ "01 V", "02 V", "03 V", "01 P", "02 P", "03 P" };
-  EXPECT_EQ(order, expected);
+  // Frequency, direction and RUN of three that wait for each other go frame by frame. A parameter of 1 may go before the
+  // last frame of 3, which has just been refreshed: nobody gets two exchanges in a row while another one waits (8.1).
+  const auto first_parameter = std::find(order.begin(), order.end(), "01 P");
+  EXPECT_GE(first_parameter - order.begin(), 8);
+  const auto velocities =
+      std::stable_partition(order.begin(), order.end(), [](const std::string& entry) { return entry.back() == 'V'; });
+  const std::vector<std::string> turns{ "01 V", "02 V", "03 V", "01 V", "02 V", "03 V", "01 V", "02 V", "03 V" };
+  const std::vector<std::string> parameters{ "01 P", "02 P", "03 P" };
+  EXPECT_EQ(std::vector<std::string>(order.begin(), velocities), turns);
+  EXPECT_EQ(std::vector<std::string>(velocities, order.end()), parameters);
 }
 
 TEST(Scheduling, commandsAndRefreshesAlternateInAStorm)

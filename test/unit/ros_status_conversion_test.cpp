@@ -22,7 +22,7 @@ protected:
   {
     config_.name = "belt";
     config_.node = 7;
-    config_.drive = "test_drive";
+    config_.drive = "/home/user/test_drive.yaml";
     status_.has_stamp = true;
     status_.stamp = moment_.steady;
   }
@@ -30,6 +30,7 @@ protected:
   static drive::Drive drive()
   {
     drive::Profile profile;
+    profile.name = "test_drive";
     profile.faults[9] = "undervoltage";
     return drive::Drive(profile);
   }

@@ -43,6 +43,19 @@ TimePoint soon()
   return steady_clock::now() + milliseconds(SOON_MS);
 }
 
+/// As often as it takes; no call holds up the thread for long.
+template <typename Openable>
+OpenResult openWhole(Openable& port, std::string& error)
+{
+  OpenResult result = OpenResult::Pending;
+  while (result == OpenResult::Pending)
+  {
+    result = port.open(error);
+    EXPECT_TRUE(result == OpenResult::Opened || !port.isOpen());
+  }
+  return result;
+}
+
 /// A socket of the test; closed at the end.
 class Descriptor
 {
@@ -187,7 +200,7 @@ protected:
   Duration timeToOpen(Port& port, OpenResult expected)
   {
     const TimePoint start = steady_clock::now();
-    EXPECT_EQ(expected, port.open(error_));
+    EXPECT_EQ(expected, openWhole(port, error_));
     return steady_clock::now() - start;
   }
 
@@ -200,7 +213,7 @@ class ConnectedTcpPort : public TcpPortTest
 protected:
   ConnectedTcpPort()
   {
-    EXPECT_EQ(OpenResult::Opened, port_->open(error_)) << error_;
+    EXPECT_EQ(OpenResult::Opened, openWhole(*port_, error_)) << error_;
     peer_ = server_.accept();
   }
 
@@ -266,6 +279,7 @@ TEST_F(ConnectedTcpPort, isGoneBehindWhatThePeerSentBeforeItClosed)
   Bytes bytes;
   EXPECT_EQ(ReceiveResult::Gone, receiveAll(bytes));
   EXPECT_EQ(hex("01 03 04 12"), bytes);
+  EXPECT_EQ(Loss::ClosedByPeer, port_->lastLoss());
 }
 
 TEST_F(ConnectedTcpPort, isGoneWhenThePeerResets)
@@ -273,7 +287,55 @@ TEST_F(ConnectedTcpPort, isGoneWhenThePeerResets)
   reset(peer_);
   Bytes bytes;
   EXPECT_EQ(ReceiveResult::Gone, receiveAll(bytes));
+  EXPECT_EQ(Loss::ClosedByPeer, port_->lastLoss());
   EXPECT_FALSE(port_->send(hex("01")));
+}
+
+TEST_F(ConnectedTcpPort, theFirstFrameBehindAResetShowsWhoClosed)
+{
+  reset(peer_);
+  // The reset may not have been noticed before.
+  const TimePoint give_up = soon();
+  while (port_->send(hex("01 02")) && steady_clock::now() < give_up)
+  {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(Loss::ClosedByPeer, port_->lastLoss());
+}
+
+TEST_F(ConnectedTcpPort, isAbandonedByAReset)
+{
+  port_->abandon();
+  EXPECT_FALSE(port_->isOpen());
+  char byte = 0;
+  pollfd polled{ peer_.get(), POLLIN, 0 };
+  EXPECT_EQ(1, ::poll(&polled, 1, SOON_MS));
+  EXPECT_EQ(-1, ::recv(peer_.get(), &byte, 1, 0));
+  EXPECT_EQ(ECONNRESET, errno);
+  port_->abandon();
+}
+
+TEST_F(ConnectedTcpPort, aReplyInTwoPartsIsNotHeldUpByItsOwnAcknowledgement)
+{
+  // The peer sends its second part when the first one is acknowledged (Nagle), which takes 40 ms unless it is told not to.
+  // A new connection acknowledges at once for a while.
+  Duration shortest = std::chrono::hours(1);
+  for (int round = 0; round < 40; ++round)
+  {
+    ASSERT_TRUE(port_->send(hex("01 03")));
+    Bytes request(2);
+    ASSERT_EQ(2, ::recv(peer_.get(), request.data(), request.size(), MSG_WAITALL));
+    const TimePoint start = steady_clock::now();
+    writeTo(peer_, hex("01 03"));
+    writeTo(peer_, hex("04 12"));
+    Bytes reply;
+    while (reply.size() < 4 && port_->receive(reply, soon()) == ReceiveResult::Data)
+    {
+    }
+    ASSERT_EQ(hex("01 03 04 12"), reply);
+    shortest = round < 30 ? shortest : std::min(shortest, Duration(steady_clock::now() - start));
+  }
+  EXPECT_LT(shortest, milliseconds(30)) << "of ten";
 }
 
 TEST_F(ConnectedTcpPort, sendingToAClosedPeerRaisesNoSignal)
@@ -352,7 +414,7 @@ TEST_F(ConnectedTcpPort, canBeOpenedAgain)
 {
   writeTo(peer_, hex("01 02 03"));
   peer_.close();
-  EXPECT_EQ(OpenResult::Opened, port_->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port_, error_)) << error_;
   const Descriptor again = server_.accept();
   EXPECT_TRUE(port_->send(hex("04")));
   EXPECT_EQ(hex("04"), readFrom(again, 1));
@@ -388,12 +450,12 @@ TEST_F(TcpPortTest, connectsToIpv6)
   if (!server.there())
   {
     // Without IPv6 it is the way to fail that can be seen.
-    EXPECT_NE(OpenResult::Opened, makePort("::1", 1)->open(error_));
+    EXPECT_NE(OpenResult::Opened, openWhole(*makePort("::1", 1), error_));
     EXPECT_NE("", error_);
     return;
   }
   const auto port = makePort("::1", server.port());
-  EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
   const Descriptor peer = server.accept();
   EXPECT_TRUE(port->send(hex("01")));
   EXPECT_EQ(hex("01"), readFrom(peer, 1));
@@ -403,7 +465,7 @@ TEST_F(TcpPortTest, connectsToAName)
 {
   const Server server;
   const auto port = makePort("localhost", server.port());
-  EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
   EXPECT_GE(server.accept().get(), 0);
   EXPECT_EQ("tcp://localhost", port->name());
 }
@@ -414,7 +476,7 @@ TEST_F(TcpPortTest, triesAllAddressesOfAName)
   const auto port = makePort("gateway", server.port(), [](const std::string&, std::string&) {
     return std::vector<std::string>{ "127.0.0.2", "::1", "127.0.0.1" };
   });
-  EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
 }
 
 /// Sockets of this process that take connections.
@@ -436,7 +498,7 @@ TEST_F(TcpPortTest, listensNowhere)
   const Server server;
   const int before = listeningSockets();
   const auto port = makePort("127.0.0.1", server.port());
-  ASSERT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  ASSERT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
   EXPECT_EQ(before, listeningSockets());
   EXPECT_GE(before, 1) << "the server of the test itself is to be counted";
 }
@@ -450,7 +512,7 @@ TEST_F(TcpPortTest, asksForTheConfiguredHostAndCallsItsPortOnly)
     asked.push_back(host);
     return std::vector<std::string>{ "127.0.0.1" };
   });
-  ASSERT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  ASSERT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
   {
     // Whatever the gateway says, a redirection among it, is bytes of the line.
     const Descriptor peer = configured.accept();
@@ -460,7 +522,7 @@ TEST_F(TcpPortTest, asksForTheConfiguredHostAndCallsItsPortOnly)
     EXPECT_EQ(ReceiveResult::Data, port->receive(received, soon()));
   }
   configured.close();
-  EXPECT_EQ(OpenResult::NotThere, port->open(error_));
+  EXPECT_EQ(OpenResult::NotThere, openWhole(*port, error_));
   EXPECT_EQ((std::vector<std::string>{ "gateway", "gateway" }), asked);
   pollfd called{ other.listener(), POLLIN, 0 };
   EXPECT_EQ(0, ::poll(&called, 1, 0)) << "a server that is not configured was called";
@@ -480,12 +542,12 @@ TEST_F(TcpPortTest, opensAsSoonAsSomebodyListensAgain)
 {
   Server server;
   const auto port = makePort("127.0.0.1", server.port());
-  EXPECT_EQ(OpenResult::Opened, port->open(error_));
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_));
   server.close();
-  EXPECT_EQ(OpenResult::NotThere, port->open(error_));
+  EXPECT_EQ(OpenResult::NotThere, openWhole(*port, error_));
   const Server again(AF_INET, 8, server.port());
   ASSERT_TRUE(again.there());
-  EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
 }
 
 TEST_F(TcpPortTest, neverCallsItself)
@@ -502,7 +564,7 @@ TEST_F(TcpPortTest, neverCallsItself)
   const auto port = makePort("127.0.0.1", number);
   for (int i = 0; i < 16000; ++i)
   {
-    ASSERT_EQ(OpenResult::NotThere, port->open(error_)) << i;
+    ASSERT_EQ(OpenResult::NotThere, openWhole(*port, error_)) << i;
   }
 }
 
@@ -545,6 +607,27 @@ TEST_F(TcpPortBlackHole, openingItIsBounded)
   }
 }
 
+TEST_F(TcpPortBlackHole, openingItLeavesTimeForOtherDuties)
+{
+  const auto port = makePort("127.0.0.1", server_.port());
+  int steps = 1;
+  while (port->open(error_) == OpenResult::Pending)
+  {
+    EXPECT_FALSE(port->isOpen());
+    ++steps;
+  }
+  EXPECT_GE(steps, 10) << "in one second";
+}
+
+TEST_F(TcpPortBlackHole, closingEndsTheAttempt)
+{
+  const auto port = makePort("127.0.0.1", server_.port());
+  EXPECT_EQ(OpenResult::Pending, port->open(error_));
+  port->close();
+  EXPECT_FALSE(port->isOpen());
+  EXPECT_EQ(OpenResult::Pending, port->open(error_)) << "begins anew";
+}
+
 TEST_F(TcpPortBlackHole, anAddressThatDoesNotAnswerLeavesTimeForTheNext)
 {
   // The server is full on both addresses, so that only the time tells that both were tried.
@@ -570,7 +653,7 @@ TEST_F(TcpPortTest, theReasonOfTheNameServerIsPassedOn)
     error = "Host not found: " + host;
     return std::vector<std::string>();
   });
-  EXPECT_EQ(OpenResult::NotThere, port->open(error_));
+  EXPECT_EQ(OpenResult::NotThere, openWhole(*port, error_));
   EXPECT_EQ("cannot connect to tcp://gateway: Host not found: gateway", error_);
 }
 
@@ -578,7 +661,7 @@ TEST_F(TcpPortTest, aNameWithoutAddressIsReported)
 {
   const auto port =
       makePort("gateway", 502, [](const std::string&, std::string&) { return std::vector<std::string>(); });
-  EXPECT_EQ(OpenResult::NotThere, port->open(error_));
+  EXPECT_EQ(OpenResult::NotThere, openWhole(*port, error_));
   EXPECT_EQ("cannot connect to tcp://gateway: its name has no address", error_);
 }
 
@@ -624,16 +707,16 @@ TEST_F(TcpPortSlowName, isWaitedForOneSecondAndTakenLater)
   EXPECT_LE(timeToOpen(*port, OpenResult::NotThere), OPENING_BOUND);
   EXPECT_EQ(1, *calls_) << "one look-up at a time";
   answer();
-  EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
   EXPECT_EQ(1, *calls_);
-  EXPECT_EQ(OpenResult::Opened, port->open(error_)) << error_;
+  EXPECT_EQ(OpenResult::Opened, openWhole(*port, error_)) << error_;
   EXPECT_EQ(2, *calls_) << "the address may have changed";
 }
 
 TEST_F(TcpPortSlowName, doesNotHoldUpTheEnd)
 {
   auto port = makePort("gateway", 502, resolver());
-  EXPECT_EQ(OpenResult::NotThere, port->open(error_));
+  EXPECT_EQ(OpenResult::NotThere, openWhole(*port, error_));
   const TimePoint start = steady_clock::now();
   port.reset();
   EXPECT_LE(steady_clock::now() - start, milliseconds(500));

@@ -10,8 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/command_error.h"
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/link_record.h"
+#include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
 #include "inverter_bus/bus/scheduler.h"
@@ -83,7 +86,7 @@ private:
 class Inverter
 {
 public:
-  Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after);
+  Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after, int retries);
 
   // --- parts ------------------------------------------------------------------------------------------------------
   const std::size_t index;
@@ -96,15 +99,21 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  /// What came since the last complete status.
+  LinkRecord record;
+  LostWrites lost_writes;
 
   // --- link -------------------------------------------------------------------------------------------------------
   /// A valid reply came. Returns true if the inverter was offline or unknown before.
   bool answered(const wire::Reply& reply);
-  /// An exchange failed after its repeats. Returns true if the inverter has just gone offline.
-  bool failed(TimePoint now, std::uint16_t error_id);
+  /// An exchange failed after its repeats. Returns true if the inverter has just gone offline. Lost writes of command words
+  /// alone don't take it offline (contract, 8.1): a read must have been lost among them.
+  bool failed(TimePoint now, std::uint16_t error_id, bool write = false);
   /// The port is gone, or the inverter is given up: offline at once.
   void goOffline(std::uint16_t error_id);
   bool offline() const;
+  /// Only writes were lost, and so many that a read has to tell whether the drive is away.
+  bool needsRead() const;
   /// A complete status has come since start or return.
   bool known() const;
   /// A complete status has come since the node was started.
@@ -130,7 +139,7 @@ public:
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// An exchange ended; a lost one ends all that was proven of RUN.
-  void noteExchange(wire::Outcome outcome);
+  void noteExchange(const wire::Reply& reply);
   /// It was a read of a refresh (that goes on, with \p more): what it shows of RUN.
   void noteStatus(const wire::Reply& reply, bool more);
   /// A parameter was written through this node.
@@ -141,6 +150,8 @@ public:
   bool mayRepeatWords(TimePoint now) const;
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
+  /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+  bool mustBeSeenRunning() const;
   /// Why the drive gets no command but a stop; empty: it does.
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.
@@ -152,6 +163,8 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
+  /// What the log says when it goes offline.
+  std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
   /// After a complete refresh.
@@ -164,7 +177,14 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
+  /// As a member of a group that was refused for the sake of another one.
+  void refuseForOther(std::uint16_t error_id, const std::string& reasons);
   void acceptCommand();
+  /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
+  /// would hide it.
+  void velocityFailed(std::uint16_t error_id, const std::string& text);
+  /// One was confirmed, or a 0 came.
+  void velocityConfirmed();
   void noteExchangeError(std::uint16_t error_id);
 
   bool reset_active = false;
@@ -175,7 +195,6 @@ public:
   /// Its settings are not asked for before that.
   TimePoint setting_not_before;
   int refresh_tries = 0;
-  int velocity_tries = 0;
   /// Frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
   unsigned velocity_frames = 0;
   int settings_tries = 0;
@@ -191,16 +210,27 @@ private:
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
-  std::vector<Finding> errors() const;
+  std::vector<Finding> errors(TimePoint now) const;
+  std::string exchangeText() const;
+  std::string offlineText(TimePoint now) const;
+  std::string silenceText() const;
+  Obstacles obstacles() const;
+  void showError(TimePoint now, InverterStatus& status) const;
 
   int offline_after_;
+  /// Since its last status words; counted up to offline_after_.
+  int exchanges_without_data_;
   bool known_ = false;  ///< a complete status has come since start or return
   bool ever_known_ = false;
   bool offline_ = false;
   int failures_ = 0;
+  bool read_failed_ = false;  ///< among these failures
   std::uint16_t exchange_error_ = 0;
-  std::uint16_t command_error_ = 0;
-  std::string command_error_text_;
+  /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
+  std::uint8_t gateway_code_ = 0;
+  CommandError command_error_;
+  std::uint16_t velocity_error_ = 0;
+  std::string velocity_error_text_;
   TimePoint last_reply_;
   bool ever_answered_ = false;
   TimePoint silence_until_;

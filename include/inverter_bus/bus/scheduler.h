@@ -95,6 +95,8 @@ struct Pick
     Background
   };
   What what = What::Nothing;
+  /// Whom the exchange is for; of a grouped velocity the member whose turn it is. Who books another one in done() has
+  /// found that this one needed no frame.
   std::size_t inverter = 0;
   CommandId command = 0;
   /// Paid from the probes' share of the bus time.
@@ -107,8 +109,12 @@ struct Pick
 /// Who goes next on the bus (contract, section 3). Pure: time comes in as an argument, a decision goes out; no clock, no
 /// thread, no I/O. Equal claims are decided by node order, so a run can be repeated exactly.
 ///
-/// Order: stops; urgent commands (a 0); the rest of a velocity unit under way; drives whose own time-out is near; the
+/// Order: stops; urgent commands (a 0); the rest of velocity units under way; drives whose own time-out is near; the
 /// long jobs' eighth exchange; commands alternating with refreshes; probes within their share; refreshes; long jobs.
+///
+/// But for stops nobody goes on while another inverter waits (contract, 8.1): after a frame of a velocity, or a read that
+/// a deadline began, another inverter's command or deadline comes first, so that the members of a group take turns frame
+/// by frame; after an exchange that was lost everybody else comes first, with a refresh, too.
 class Scheduler
 {
 public:
@@ -134,9 +140,15 @@ public:
   void eraseVelocity(std::size_t inverter);
   void makeUrgent(std::size_t inverter);
   void postpone(CommandId id, TimePoint not_before);
+  /// One member of a grouped velocity that has to wait or to be repeated goes its own way as \p own, in the group's place
+  /// and not before \p not_before; the others go on without it. A velocity of one inverter is only postponed.
+  void splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before);
   bool velocityWaits(std::size_t inverter) const;
   /// Inverters that a waiting velocity still has to serve, in node order; empty: no such command.
   std::vector<std::size_t> members(CommandId id) const;
+
+  /// A refresh of this inverter goes as soon as others let it, also in the pause of the interval.
+  void readSoon(std::size_t inverter);
 
   // --- decisions ----------------------------------------------------------------------------------------------------
   /// The next exchange, or when to ask again.
@@ -149,9 +161,6 @@ public:
 
   /// What a probe of \p start has cost after all, when that shows only later: a gateway that was kept busy by it.
   void chargeProbe(TimePoint now, Duration cost);
-
-  /// A velocity unit that was cut short (stop, offline) goes on no more.
-  void endUnit(CommandId id);
 
   // --- cycle --------------------------------------------------------------------------------------------------------
   /// Complete status cycles so far.
@@ -171,6 +180,11 @@ private:
     WaitingCommand command;
     std::uint64_t epoch;
     std::uint64_t sequence;
+    /// A velocity of which a frame has gone: a unit under way.
+    bool begun = false;
+    unsigned frames = 0;
+    /// The member that had the last frame.
+    std::optional<std::size_t> served;
   };
   std::optional<Pick> pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const;
   std::optional<Pick> pickDeadline(TimePoint now, const std::vector<InverterView>& views);
@@ -178,18 +192,34 @@ private:
   std::optional<Pick> pickProbe(TimePoint now, const std::vector<InverterView>& views) const;
   bool mayProbe(TimePoint now, const InverterView& view, std::size_t index) const;
   std::optional<Pick> pickRefresh(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> pickPutOff(TimePoint now, const std::vector<InverterView>& views) const;
+  std::optional<Pick> pickOfCycle(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickBackground(const std::vector<InverterView>& views) const;
   Pick nothing(TimePoint now, const std::vector<InverterView>& views) const;
   bool takesPart(const InverterView& view) const;
-  bool findNextOfCycle(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<std::size_t> nextOfCycle(TimePoint now, const std::vector<InverterView>& views);
+  bool isPutOff(std::size_t inverter) const;
   void closeCycle(TimePoint now);
   Pick choose(TimePoint now, const std::vector<InverterView>& views);
   Pick chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate);
   std::optional<Pick> chooseBehindStops(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseGoingOn(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseInTurn(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> chooseForAnother(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> goOnWithUnit(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> goOnWithRefresh(TimePoint now, const std::vector<InverterView>& views);
+  bool deadlinesMayGo(const std::vector<InverterView>& views) const;
+  bool backgroundIsDue(const std::vector<InverterView>& views) const;
+  void doneCommand(const Pick& pick, bool more);
+  void doneRefresh(const Pick& pick, bool more, bool answered);
   void noteHalfRefresh(const Pick& pick, bool more);
+  void forgetOffline(const std::vector<InverterView>& views);
   void bookStop(const Pick& pick, const std::vector<InverterView>& views);
   std::size_t readyCommands(TimePoint now) const;
   bool ready(const Ticket& ticket, TimePoint now) const;
+  std::size_t nextMember(const Ticket& ticket) const;
+  bool startsTogether(const Ticket& ticket, TimePoint now) const;
+  int rank(const Ticket& ticket, TimePoint now, bool one_goes_on) const;
   const Ticket* firstReady(TimePoint now, bool urgent_only) const;
   std::deque<Ticket>::iterator find(CommandId id);
 
@@ -205,18 +235,31 @@ private:
   /// The exchange in which its refresh was not answered last; 0: it has answered since.
   std::vector<std::uint64_t> silent_at_deadline_;
   std::uint64_t last_insisting_exchange_ = 0;
+  /// After a stop that was not answered: as long as it took.
+  TimePoint patient_until_;
   /// Frames of stops since the last exchange that took nothing from a stop.
   unsigned stops_in_a_row_ = 0;
   /// The last exchange went although a stop waited.
   bool let_through_ = false;
 
+  // who had the last exchange
+  /// Nobody after a stop: stops are free of the rule.
+  std::optional<std::size_t> last_inverter_;
+  bool last_lost_ = false;
+  CommandId last_command_ = 0;
+  /// Not to be chosen in the decision at hand, if there is anybody else.
+  std::optional<std::size_t> avoided_;
+
   // commands and refreshes
-  CommandId unit_ = 0;
   unsigned commands_in_a_row_ = 0;
   unsigned exchanges_without_background_ = 0;
   unsigned deadlines_in_a_row_ = 0;
-  /// A refresh that a deadline began and that needs another read.
-  std::optional<std::size_t> half_refreshed_;
+  /// Refreshes that a deadline began and that need another read.
+  std::deque<std::size_t> half_refreshed_;
+  /// Those whose turn in the cycle came just after an exchange of theirs was lost: they take it after somebody else.
+  std::deque<std::size_t> put_off_;
+  /// One of them had its turn last: the cycle goes on before the next one has.
+  bool cycle_first_ = false;
 
   // probes
   std::size_t probe_cursor_ = 0;

@@ -31,7 +31,7 @@ public:
   bool written() const;
   /// Somebody asks for it again and again: it was confirmed several times in a row, each time shortly before the next one.
   bool repeats() const;
-  /// The inverter is out of sight: whatever was confirmed may be over.
+  /// The inverter is out of sight, or RUN was sent: whatever was confirmed may be over.
   void forgetConfirmation();
   /// When the last frame of any stop of this inverter left; the epoch: none has.
   TimePoint lastSentAt() const;
@@ -63,6 +63,9 @@ public:
   bool wantsClearLine() const;
   /// The read-back can't be asked now: the next attempt begins.
   void writeAgain();
+  /// No newer velocity takes the place of the pending stop; without this a stop by a command of 0 gives way to one.
+  void hold();
+  bool held() const;
   /// RUN was seen off by a status read that was sent after the write.
   void confirm();
   /// A newer command of the same user takes its place (a command of 0 that was superseded).
@@ -78,6 +81,7 @@ private:
   const drive::Drive& drive_;
   std::uint8_t station_;
   bool pending_ = false;
+  bool held_ = false;
   StopMode mode_ = StopMode::Decelerate;
   unsigned attempts_ = 0;
   std::size_t step_ = 0;

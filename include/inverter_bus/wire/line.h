@@ -10,8 +10,11 @@
 #include <vector>
 
 #include "inverter_bus/wire/echo_filter.h"
+#include "inverter_bus/wire/gateway_record.h"
+#include "inverter_bus/wire/peer_words.h"
 #include "inverter_bus/wire/protocol.h"
 #include "inverter_bus/wire/reply_bars.h"
+#include "inverter_bus/wire/telnet_filter.h"
 
 namespace inverter_bus
 {
@@ -96,21 +99,13 @@ struct LateReply
   std::uint8_t gateway_code = 0;
 };
 
-/// A request that was sent on this connection, timed out (or got something damaged), and may still be in the gateway.
-struct Outstanding
-{
-  std::uint64_t ticket = 0;
-  std::uint8_t station = 0;
-  TimePoint sent_at;
-};
-
 /// One request at a time over one port: gap, transmission, waiting, checking, cleaning up after a lost reply. The only
 /// user of the Port, called by the bus thread only. It decides nothing: no retries, no priorities.
 ///
 /// After a time-out or a damaged reply, the shape of that request is barred for one second (contract, rule 3.9),
 /// because most protocols have no transaction number: a reply that comes late would be taken for the answer to the next
 /// request of the same shape. The bar falls when the late reply has come, or when a loop-back (08H) of that station
-/// with a fresh number was answered after it.
+/// with a fresh number was answered after it. Behind a gateway GatewayRecord decides in its place.
 class Line
 {
 public:
@@ -155,6 +150,9 @@ public:
   Duration costUnanswered(const Request& request) const;
 
   const LineCounters& counters() const;
+  /// Of the open port, see Port.
+  std::optional<AdapterLatency> adapterLatency() const;
+
   /// Longest pause inside a reply that is waited out.
   Duration patience() const;
 
@@ -177,8 +175,10 @@ public:
   std::string peerWords() const;
   /// Modbus TCP: requests of this connection that nobody has answered yet, oldest first. Empty in other protocols.
   std::vector<Outstanding> outstanding() const;
-  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies bear transaction number 0"),
-  /// so that they cannot be trusted; empty as long as it does not.
+  /// Modbus TCP: the gateway has shown on this connection that it keeps transaction numbers and units.
+  bool gatewayTrusted() const;
+  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies bear transaction number 0 ..."),
+  /// as seen since the start; empty as long as it does not. Name it once.
   std::string gatewayQuirk() const;
   /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come
   /// could not be told apart; empty if it need not.
@@ -188,6 +188,7 @@ public:
 
 private:
   struct Waiting;
+  TimePoint mayAskAt(const Request& request, TimePoint now) const;
   bool settle(Duration quiet);
   bool send(const Bytes& frame, Reply& reply);
   Waiting startWaiting(const Request& request, TimePoint sent_at);
@@ -208,6 +209,12 @@ private:
   void consumeIdleHead();
   void stripEcho();
   bool noteUnasked(const Parsed& parsed, const Bytes& raw);
+  bool takeLate(const Parsed& parsed);
+  bool takeLateFromGateway(const Parsed& parsed);
+  void noteLate(const Parsed& parsed, std::uint8_t station, const ReplyBars::Late& lost, std::uint8_t gateway_code);
+  void noteAsked(const Waiting& waiting, const Reply& reply);
+  GatewayRecord::Answer answerOf(const Parsed& parsed) const;
+  bool isSurplus() const;
   void observe(FrameEvent::Kind kind, const Bytes& bytes, TimePoint time);
   void reportDamaged();
   void skip(std::size_t count);
@@ -235,10 +242,15 @@ private:
   ReplyBars bars_;
   EchoFilter echo_;
   std::vector<LateReply> late_;
-  Duration gateway_timeout_{ std::chrono::seconds(3) };
+  /// Modbus TCP: in place of bars_.
+  std::optional<GatewayRecord> gateway_;
+  TelnetFilter telnet_;
+  PeerWords words_;
   Loss last_loss_ = Loss::None;
   /// A valid reply came since the port was opened.
   bool proven_ = false;
+  /// Nothing but bytes directly behind it has come since the last valid reply.
+  bool behind_reply_ = false;
   /// The last request if it was one that the drive may answer or not.
   std::optional<Request> silent_request_;
 };

@@ -20,14 +20,15 @@ struct Parsed
   {
     /// Could become a frame: wait for more.
     Incomplete,
-    /// A valid reply to the request: \ref pdu.
+    /// A valid reply to the request: \ref pdu. Behind a gateway also one whose number or unit is not that of the request,
+    /// but what some gateways make of it.
     Reply,
-    /// A valid exception reply to the request: \ref pdu.
+    /// A valid exception reply to the request: \ref pdu. As for Reply.
     Exception,
     /// The station says that the request reached it damaged (CompoWay/F end codes 10 to 13): it was not carried out and
     /// may be repeated. \ref error_id says how.
     NotUnderstood,
-    /// The reply to an earlier request, as its transaction number tells.
+    /// Bears the transaction number of an earlier request.
     Late,
     /// A valid frame (checksum right) that is not the answer to this request.
     Foreign,
@@ -72,13 +73,19 @@ public:
   virtual std::size_t replyLength(const Request& request) const = 0;
 
   /// Replies of equal shape cannot be told apart: station, function and whatever of the request a reply repeats. Two
-  /// requests with equal shapes must not follow each other after a time-out (rule 9 of the scheduler). With a
-  /// transaction number the shape is that of the next frame(), so that no two are equal.
+  /// requests with equal shapes must not follow each other after a time-out (rule 9 of the scheduler). Behind a gateway
+  /// without station and transaction number: whether they tell, only the gateway shows (GatewayRecord).
   virtual std::string shape(const Request& request) const = 0;
   /// The shape that the valid frame \p reply from the wire would answer to; empty if none. An exception repeats nothing
   /// but station and function: its shape is the beginning that the shapes of all requests which it could answer have in
   /// common.
   virtual std::string shapeOfReply(const Parsed& reply) const = 0;
+
+  /// Transaction number of the last frame(); 0 in protocols without one.
+  virtual std::uint16_t lastNumber() const
+  {
+    return 0;
+  }
 
   /// True if the reply to \p request carries a number that no other reply carries (08H): once it has come, no reply to
   /// an earlier request can follow.
@@ -103,7 +110,9 @@ public:
 std::unique_ptr<Protocol> makeModbusRtu();
 
 /// Modbus TCP to a gateway with a serial line behind it (Modbus messaging on TCP/IP implementation guide V1.0b, section
-/// 3.1): the functions of Modbus RTU behind a header with a transaction number. The station is the unit identifier.
+/// 3.1): the functions of Modbus RTU behind a header with a transaction number, which runs from 1 to 65535 and starts
+/// again. The station is the unit identifier. Numbers, units and the length of an exception are taken as gateways write
+/// them (contract, 8.8).
 std::unique_ptr<Protocol> makeModbusTcp();
 
 /// CompoWay/F (OMRON I548-E1, sections 2-1 to 2-4): Request::pdu is the command text, Parsed::pdu the response text, in

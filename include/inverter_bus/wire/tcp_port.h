@@ -40,7 +40,7 @@ std::vector<std::string> resolveName(const std::string& host, std::string& error
 
 /// A TCP connection to a gateway: Modbus TCP, or a serial device server that passes bytes on as they are.
 ///
-/// open() takes 1 s at most, looking up the name included. A frame that the other side does not acknowledge within 1 s
+/// open() is Pending for 1 s at most, looking up the name included. A frame that the other side does not acknowledge within 1 s
 /// makes the port gone and is thrown away with it, so that no command arrives long after it was sent.
 /// \p name as the user wrote it, for messages.
 std::unique_ptr<Port> makeTcpPort(const TcpAddress& address, const std::string& name,

@@ -89,7 +89,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
   }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
-    log(Level::Ok, inverter.config.name + ": online");
+    log(Level::Ok, inverter.config.name + ": " + inverter.onlineText());
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))

@@ -74,12 +74,12 @@ class Readme(unittest.TestCase):
 
     def listed(self, name):
         """Keys that the code accepts, from its own list."""
-        body = re.search(r'%s(?: keys|\(\)\n\{\n  return)?\s*\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
+        body = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
         return re.findall(r'"(\w+)"', body)
 
     def testBusParametersAreThoseOfTheCode(self):
         documented = [row[0] for row in table(self.readme, '### The bus')]
-        self.assertEqual(documented, self.listed('BUS_KEYS'))
+        self.assertEqual(documented, self.listed('busKeys'))
 
     def testEntryParametersAreThoseOfTheCode(self):
         documented = [row[0] for row in table(self.readme, '### An entry of the scan list')]
@@ -210,7 +210,8 @@ class Readme(unittest.TestCase):
 
 class Documents(unittest.TestCase):
     def testLinksLeadSomewhere(self):
-        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')):
+        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')) + [
+                os.path.join(ROOT, 'findings', 'README.md')]:
             text = read(path)
             anchors = {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
                        for heading in re.findall(r'^#+ (.*)$', text, re.MULTILINE)}
@@ -264,6 +265,17 @@ class Documents(unittest.TestCase):
         for row in rows:
             first = re.split('[;,:]', row[1])[0]
             self.assertIn('"%s' % first, checker, 'rule %s: bus_fuzz prints no "%s"' % (row[0], first))
+
+    def testTheFindingsAreThoseOfTheFolder(self):
+        rows = table('\n' + read('findings', 'README.md'), '# Findings')
+        named = [re.match(r'\[(\w+)\]\((\w+)\.sh\)$', row[0]).groups() for row in rows]
+        scripts = [os.path.basename(path)[:-3] for path in glob.glob(os.path.join(ROOT, 'findings', '*.sh'))]
+        self.assertEqual(sorted(named), sorted((name, name) for name in scripts))
+        for name in scripts:
+            self.assertTrue(os.access(os.path.join(ROOT, 'findings', name + '.sh'), os.X_OK), name)
+            text = read('findings', name + '.sh')
+            self.assertIn('echo "as seen"', text, name)
+            self.assertNotRegex(text, r'inverter_bus', name + ' shows others, not this project')
 
     def testTheChangelogIsCatkins(self):
         lines = read('CHANGELOG.rst').splitlines()

@@ -289,8 +289,8 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     inverter.interlock.zeroed(now, publisher);
   }
   inverter.acceptCommand();
-  refusals_.accepted(inverter.index);
   inverter.velocityConfirmed();
+  refusals_.accepted(inverter.index);
   if (inverter.stop.pending())
   {
     return false;
@@ -417,12 +417,13 @@ bool Coordinator::broadcastIsSafe() const
   const auto stop_frame = [](const drive::Drive& drive) {
     const drive::Sequence* stop = drive.sequence("stop");
     return stop == nullptr ? wire::Bytes()
-                           : drive.write(0, stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
+                           : drive.broadcast(stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
   };
-  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() &&
+  // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
+  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() && line_.gatewayQuirk().empty() &&
          std::all_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
-           return profile.name == first.profile().name && profile.broadcast_stop &&
+           return profile.name == first.profile().name && profile.broadcast_stop && !inverter->config.ownPort() &&
                   inverter->settings.identity() == Identity::Right && stop_frame(inverter->drive) == stop_frame(first);
          });
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "inverter_bus/bus/own_exceptions.h"
 #include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
@@ -71,6 +72,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , settings(drive, config.node)
   , lost_writes(retries, offline_after)
   , offline_after_(offline_after)
+  , exchanges_without_data_(offline_after)
 {
 }
 
@@ -104,8 +106,8 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
   exchange_error_ = error_id;
   read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
-  if (patience || !read_failed_ || offline_)
+  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
+  if (patience || offline_)
   {
     return false;
   }
@@ -127,8 +129,8 @@ void Inverter::goOffline(std::uint16_t error_id)
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  interlock.offline();
   stop.forgetConfirmation();
+  interlock.offline();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -176,6 +178,10 @@ wire::Request Inverter::prepared(wire::Request request) const
   request.response_timeout = seconds(config.response_timeout);
   request.reply_delay = settings.replyDelay();
   request.quiet_before = seconds(drive.profile().quiet_before);
+  if (config.modbus_tcp)
+  {
+    request.own_exceptions = ownExceptions(drive.profile().exceptions, exchanges_without_data_ < offline_after_);
+  }
   return request;
 }
 
@@ -266,8 +272,11 @@ void Inverter::dropBlock(const std::string& why)
   refresh.useBlock(std::nullopt);
 }
 
-void Inverter::noteExchange(wire::Outcome outcome)
+void Inverter::noteExchange(const wire::Reply& reply)
 {
+  const wire::Outcome outcome = reply.outcome;
+  gateway_code_ = reply.gateway_code;
+  exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
   run_shown_at_.reset();
   if (outcome == wire::Outcome::Ok)
   {
@@ -309,6 +318,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     return;
   }
+  exchanges_without_data_ = 0;
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
     block_note_ = "it is selected but not in effect, or the drive refuses it";
@@ -348,6 +358,11 @@ bool Inverter::mayRepeatWords(TimePoint now) const
 {
   return run_shown_at_ && now - *run_shown_at_ < seconds(RUN_EVIDENCE_S) && *run_shown_at_ >= movement.runChangedAt() &&
          movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
+}
+
+bool Inverter::mustBeSeenRunning() const
+{
+  return movement.turnLostAt() && (drive.reports("operation") || drive.reports("running"));
 }
 
 bool Inverter::mayRun() const
@@ -552,6 +567,14 @@ void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Time
   }
   at_rest_seen_ = false;
   unexpected_motion_ = false;
+  if (movement.turnLostAt() && sent_at > *movement.turnLostAt())
+  {
+    movement.seenRunning();
+    if (!*operation)
+    {
+      judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
+    }
+  }
   operation_seen_ = operation_seen_ || *operation;
   const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
@@ -652,7 +675,7 @@ void Inverter::showError(TimePoint now, InverterStatus& status) const
 std::string Inverter::exchangeText() const
 {
   const std::string text = drive.exceptionText(exchange_error_);
-  return text.empty() ? errorText(exchange_error_) : text;
+  return text.empty() ? errorText(exchange_error_, gateway_code_) : text;
 }
 
 void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
@@ -719,6 +742,12 @@ std::string Inverter::silenceText() const
 std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
+  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+                                           "), since the port is not open: what to do about it is told of the bus" });
+    return findings;
+  }
   if (offline_)
   {
     findings.push_back({ Level::Error, offlineText(now) });

@@ -392,11 +392,15 @@ bool Drive::wears(const std::string& point) const
 wire::Request Drive::write(std::uint8_t station, const std::string& point, std::uint32_t raw) const
 {
   const auto found = profile_.points.find(point);
-  wire::Request result =
-      request(station, found == profile_.points.end() ? wire::Bytes() : encodeWrite(found->second.item, raw, profile_));
-  // CompoWay/F has letters for a broadcast, and a unit 0 like any other.
-  result.broadcast = station == 0 && profile_.protocol != "compoway_f";
-  result.expects_reply = !result.broadcast;
+  return request(station,
+                 found == profile_.points.end() ? wire::Bytes() : encodeWrite(found->second.item, raw, profile_));
+}
+
+wire::Request Drive::broadcast(const std::string& point, std::uint32_t raw) const
+{
+  wire::Request result = write(0, point, raw);
+  result.broadcast = true;
+  result.expects_reply = false;
   return result;
 }
 

@@ -139,7 +139,7 @@ public:
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// An exchange ended; a lost one ends all that was proven of RUN.
-  void noteExchange(wire::Outcome outcome);
+  void noteExchange(const wire::Reply& reply);
   /// It was a read of a refresh (that goes on, with \p more): what it shows of RUN.
   void noteStatus(const wire::Reply& reply, bool more);
   /// A parameter was written through this node.
@@ -150,6 +150,8 @@ public:
   bool mayRepeatWords(TimePoint now) const;
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
+  /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+  bool mustBeSeenRunning() const;
   /// Why the drive gets no command but a stop; empty: it does.
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.
@@ -218,12 +220,16 @@ private:
   void showError(TimePoint now, InverterStatus& status) const;
 
   int offline_after_;
+  /// Since its last status words; counted up to offline_after_.
+  int exchanges_without_data_;
   bool known_ = false;  ///< a complete status has come since start or return
   bool ever_known_ = false;
   bool offline_ = false;
   int failures_ = 0;
   bool read_failed_ = false;  ///< among these failures
   std::uint16_t exchange_error_ = 0;
+  /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
+  std::uint8_t gateway_code_ = 0;
   CommandError command_error_;
   std::uint16_t velocity_error_ = 0;
   std::string velocity_error_text_;

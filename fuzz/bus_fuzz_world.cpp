@@ -73,6 +73,7 @@ World::World(const Scene& scene, const bus::Configuration& configuration, std::u
   , writes_(scene.inverters.size())
   , cuts_(scene.inverters.size())
 {
+  line_.setGatewayTimeout(seconds(configuration.bus.gateway_timeout));
   simulated_.setObserver([this](const simulation::FrameRecord& frame) {
     frames_.push_back(frame);
     if (frames_.size() > KEPT_FRAMES)
@@ -172,6 +173,10 @@ void World::deliver()
   for (const bus::InverterStatus& status : outputs.statuses)
   {
     checker_.published(clock_.now(), status);
+  }
+  for (const bus::Finding& line : outputs.log)
+  {
+    checker_.logged(clock_.now(), line.text);
   }
   for (auto& answer : coordinator_.takeAnswers())
   {

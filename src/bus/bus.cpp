@@ -31,6 +31,7 @@ struct Bus::Implementation
     , coordinator(configuration, line)
     , loop(coordinator, line, clock, mutex)
   {
+    line.setGatewayTimeout(seconds(configuration.bus.gateway_timeout));
     line.setFrameObserver([this](const wire::FrameEvent& event) { recorder.add(event); });
   }
 

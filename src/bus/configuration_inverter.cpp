@@ -20,7 +20,9 @@ namespace
 const std::vector<std::string> RESERVED_NAMES{ "bus", "command", "stop", "bus_status", "dump_trace" };
 
 /// Stations that a request can address at all: Modbus 1 to 247, CompoWay/F 0 to 99.
-constexpr int LAST_STATION = 247;
+constexpr int LAST_STATION = InverterConfig::LAST_SERIAL_STATION;
+/// Unit identifiers of Modbus TCP.
+constexpr int LAST_UNIT = 255;
 
 /// A velocity that the profile's maximum allows by arithmetic may miss it by rounding.
 constexpr double ROUNDING = 1e-9;
@@ -118,6 +120,7 @@ drive::ProfileChanges readChanges(const Section& entry)
   changes.skip = readSkip(entry);
   changes.place = entry.placeOf("drive");
   changes.confirm = readConfirm(entry);
+  changes.confirm_place = entry.placeOf("confirm");
   const Value* overrides = entry.find("overrides");
   if (overrides == nullptr || overrides->type == Value::Type::None)
   {
@@ -135,7 +138,13 @@ drive::ProfileChanges readChanges(const Section& entry)
   return changes;
 }
 
-/// The profile reader names file and line; this adds the entry that asked for the profile.
+bool begins(const std::string& text, const std::string& start)
+{
+  return text.compare(0, start.size(), start) == 0;
+}
+
+/// The profile reader names file and line; this adds the entry that asked for the profile. What is wrong with the entry's own
+/// overrides and confirm it names itself.
 drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config, const std::string& profile_directory)
 {
   try
@@ -144,6 +153,12 @@ drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config,
   }
   catch (const drive::ConfigurationError& error)
   {
+    const std::string what = error.what();
+    const bool in_overrides = !config.changes.overrides_yaml.empty() && begins(what, config.changes.place + ": ");
+    if (in_overrides || begins(what, config.changes.confirm_place + ": key 'confirm'"))
+    {
+      throw;
+    }
     const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + wire::shown(config.drive) + "': ";
     throw drive::ConfigurationError(drive::oneLine(place + error.what()));
   }
@@ -253,8 +268,17 @@ void checkProtocolKeys(const Section& entry, const drive::Profile& profile, cons
   }
 }
 
-std::uint8_t readNode(const Section& entry, const drive::Profile& profile)
+std::uint8_t readNode(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
 {
+  if (bus.modbus_tcp)
+  {
+    // Beyond the serial stations: a drive with a port of its own.
+    const std::int64_t unit = entry.integer("node", 0, 0, LAST_UNIT);
+    if (unit == 0 || unit > LAST_STATION)
+    {
+      return static_cast<std::uint8_t>(unit);
+    }
+  }
   const auto last = std::min<unsigned>(profile.last_station, LAST_STATION);
   return static_cast<std::uint8_t>(entry.integer("node", 0, profile.first_station, last));
 }
@@ -266,7 +290,8 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   config.name = readName(entry);
   // Before the profile is read, so that nonsense is named as such; its own range comes with the profile.
   entry.require("node", "a station number");
-  entry.integer("node", 0, bus.protocol == "compoway_f" ? 0 : 1, LAST_STATION);
+  const bool from_zero = bus.modbus_tcp || bus.protocol == "compoway_f";
+  entry.integer("node", 0, from_zero ? 0 : 1, bus.modbus_tcp ? LAST_UNIT : LAST_STATION);
   entry.require("drive", "the name of a profile or an absolute path to one");
   config.drive = entry.text("drive", "");
   config.changes = readChanges(entry);
@@ -274,7 +299,8 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
   drive::Drive drive(loadProfileOf(entry, config, profile_directory));
   const drive::Profile& profile = drive.profile();
   checkProtocol(entry, profile, bus);
-  config.node = readNode(entry, profile);
+  config.modbus_tcp = bus.modbus_tcp;
+  config.node = readNode(entry, profile, bus);
   checkArming(entry, drive);
   checkProtocolKeys(entry, profile, bus);
   readVelocities(entry, profile, config);

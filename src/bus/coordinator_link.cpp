@@ -259,7 +259,7 @@ void Coordinator::noteConnection(TimePoint now, const Current& current, const wi
   }
   if (connection_.nobodyAnswered())
   {
-    log(Level::Error, "port " + configuration_.bus.port + ": is open again, but nobody answers");
+    log(Level::Error, "port " + configuration_.bus.port + ": is open again, but nobody answers", PORT);
     connection_.lost();
     loseEverybody(now, wire::ERROR_TIMEOUT);
   }
@@ -349,8 +349,10 @@ void Coordinator::renewing(TimePoint now)
 {
   if (link_.renewing(now))
   {
-    log(Level::Warn, "port " + configuration_.bus.port +
-                         ": is open, but nobody answers any more: it is opened anew, again and again while that lasts");
+    log(Level::Warn,
+        "port " + configuration_.bus.port +
+            ": is open, but nobody answers any more: it is opened anew, again and again while that lasts",
+        PORT);
   }
   reopening(now);
 }

@@ -26,7 +26,8 @@ bool alive(const wire::Reply& reply)
 /// Lost or damaged: is it to be repeated?
 bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 {
-  if (alive(reply))
+  // A gateway that says that the drive is silent has tried itself.
+  if (alive(reply) || reply.gateway_code != 0)
   {
     tries = 0;
     return false;
@@ -80,9 +81,10 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     return;
   }
   Inverter& inverter = *inverters_[current.inverter];
-  inverter.noteExchange(reply.outcome);
+  inverter.noteExchange(reply);
   if (current.request.expects_reply)
   {
+    inverter.record.note(reply);
     noteLink(reply);
     noteConnection(reply.finished_at, current, reply);
   }
@@ -138,6 +140,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       doneSetting(current, reply);
       break;
     default:
+      inverter.noteProbed(reply);
       finishExchange(current, reply, false);
       break;
   }
@@ -170,7 +173,7 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
     wentOffline(now, inverter);
     return;
   }
-  failTrial(now, inverter);
+  failTrial(now, inverter, error_id);
 }
 
 /// It answers, but not what counts.
@@ -181,15 +184,15 @@ void Coordinator::noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t e
     wentOffline(now, inverter);
     return;
   }
-  failTrial(now, inverter);
+  failTrial(now, inverter, error_id);
 }
 
 /// An offline inverter that has answered has shown no status after all: what that has cost is paid by the probes.
-void Coordinator::failTrial(TimePoint now, Inverter& inverter)
+void Coordinator::failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
   if (inverter.onTrial() && !shutting_down_)
   {
-    scheduler_->chargeProbe(now, inverter.endTrial());
+    scheduler_->chargeProbe(now, inverter.endTrial(error_id));
   }
 }
 
@@ -201,7 +204,7 @@ void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t
     wentOffline(now, inverter);
     return;
   }
-  failTrial(now, inverter);
+  failTrial(now, inverter, error_id);
   if (!inverter.offline() && inverter.liveness.needsRead())
   {
     scheduler_->readSoon(inverter.index);
@@ -214,7 +217,7 @@ void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason());
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason());
+    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(), inverter.config.name);
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -282,7 +285,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     if (reply.outcome == wire::Outcome::Exception)
     {
       // An offline inverter's stop is its probe, however politely it is refused.
-      failTrial(reply.finished_at, inverter);
+      failTrial(reply.finished_at, inverter, reply.error_id);
     }
     return;
   }
@@ -321,7 +324,11 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     finishVelocity(current, reply);
     return;
   }
-  inverter.movement.doubtful(current.write);
+  if (!current.resync)
+  {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write, now);
+  }
   const bool lost = !alive(reply);
   // A loop-back that was lost writes nothing.
   const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
@@ -630,7 +637,7 @@ void Coordinator::judgeRefresh(TimePoint now, Inverter& inverter)
 {
   if (!inverter.known())
   {
-    log(Level::Ok, inverter.config.name + ": online");
+    log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
   }
   const Judgement judgement = inverter.judge(now);
   if (judgement.tripped)
@@ -730,6 +737,11 @@ void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bo
   echo_found_ = echo_found;
 }
 
+void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
+{
+  adapter_.note(latency);
+}
+
 void Coordinator::portOpened(TimePoint now)
 {
   connected_ = true;
@@ -750,7 +762,7 @@ void Coordinator::portOpened(TimePoint now)
     port_complained_ = false;
     port_error_.clear();
     last_error_ = 0;
-    log(Level::Ok, "port " + configuration_.bus.port + " is open");
+    log(Level::Ok, "port " + configuration_.bus.port + " is open", PORT);
   }
   for (const auto& inverter : inverters_)
   {
@@ -771,7 +783,7 @@ void Coordinator::portWorks()
     port_failing_ = false;
     port_complained_ = false;
     port_error_.clear();
-    log(Level::Ok, "port " + configuration_.bus.port + " works again");
+    log(Level::Ok, "port " + configuration_.bus.port + " works again", PORT);
   }
 }
 
@@ -789,7 +801,7 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
-        error + (in_use ? "; trying again for a while" : "; the node keeps trying"));
+        error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);
     portLost(now);
   }
 }
@@ -806,8 +818,10 @@ void Coordinator::portLost(TimePoint now)
                        ": another client may hold it, or it serves another protocol mode");
     return;
   }
-  portFails(now,
-            "port " + port + (unused ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone"));
+  portFails(now, "port " + port +
+                     (unused                       ? " can be opened, but fails in use: see dmesg, check the adapter"
+                      : configuration_.bus.gateway ? " is gone"
+                                                   : " is gone: plug it in"));
 }
 
 /// \p error says what is wrong with it, once.
@@ -820,7 +834,7 @@ void Coordinator::portFails(TimePoint now, const std::string& error)
   {
     port_failing_ = !port_works_ || line_.telnetFound();
     port_error_ = error;
-    log(Level::Error, port_error_ + "; the node keeps trying");
+    log(Level::Error, port_error_ + "; the node keeps trying", PORT);
     port_complained_ = true;
   }
   connected_ = false;

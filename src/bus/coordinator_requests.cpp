@@ -55,7 +55,8 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = judged.text.empty() ? errorText(judged.error_id) : judged.text;
     return judged.error_id;
   }
-  if (inverter.offline())
+  // That it is the wrong drive says more than that it tells no status (the order of section 2).
+  if (inverter.offline() && inverter.settings.identity() != Identity::Wrong)
   {
     judged.error_id = ERROR_OFFLINE;
   }
@@ -105,9 +106,10 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     }
   }
   judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
-  if (judged.error_id == ERROR_OFFLINE)
+  if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
   {
-    judged.text += ": " + inverter.offlineReason();
+    judged.text =
+        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
   }
   return judged.error_id;
 }
@@ -205,8 +207,8 @@ void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, con
   {
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
-    inverters_[target.first]->refuseCommand(error_id,
-                                            one.text.empty() ? "the group was refused: " + reasons : one.text);
+    one.text.empty() ? inverters_[target.first]->refuseForOther(error_id, reasons)
+                     : inverters_[target.first]->refuseCommand(error_id, one.text);
     refusals_.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
                                                            : "the group was refused: " + reasons);
   }
@@ -416,12 +418,13 @@ bool Coordinator::broadcastIsSafe() const
   const auto stop_frame = [](const drive::Drive& drive) {
     const drive::Sequence* stop = drive.sequence("stop");
     return stop == nullptr ? wire::Bytes()
-                           : drive.write(0, stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
+                           : drive.broadcast(stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
   };
-  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() &&
+  // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
+  return connected_ && inverters_.size() > 1 && !stop_frame(first).empty() && line_.gatewayQuirk().empty() &&
          std::all_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
-           return profile.name == first.profile().name && profile.broadcast_stop &&
+           return profile.name == first.profile().name && profile.broadcast_stop && !inverter->config.ownPort() &&
                   inverter->settings.identity() == Identity::Right && stop_frame(inverter->drive) == stop_frame(first);
          });
 }
@@ -485,7 +488,8 @@ std::string Coordinator::refusalText(const Inverter& inverter, std::uint16_t err
 /// A brand or model that the profile is not for: what it would do with these requests, nobody knows.
 bool Coordinator::refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback)
 {
-  const std::string why = inverter.offline() ? "" : inverter.wrongDrive();
+  const bool wrong = inverter.settings.identity() == Identity::Wrong;
+  const std::string why = inverter.offline() && !wrong ? "" : inverter.wrongDrive();
   if (!why.empty() && !shutting_down_)
   {
     refuseCall(callback, inverter.settings.identity() == Identity::Wrong ? ERROR_NOT_ARMED : ERROR_OFFLINE, why);

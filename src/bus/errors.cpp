@@ -30,8 +30,15 @@ bool isLastingRefusal(const wire::Reply& reply)
   return reply.outcome == wire::Outcome::Exception && reply.pdu.size() > 1 && reply.pdu[1] <= LAST_LASTING_EXCEPTION;
 }
 
-std::string errorText(std::uint16_t error_id)
+std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code)
 {
+  if (error_id == wire::ERROR_TIMEOUT && gateway_code != 0)
+  {
+    char answered[64];
+    std::snprintf(answered, sizeof answered, "no reply in time (the gateway answered with exception %02XH)",
+                  static_cast<unsigned>(gateway_code));
+    return answered;
+  }
   switch (error_id)
   {
     case ERROR_NONE:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "inverter_bus/bus/own_exceptions.h"
 #include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
@@ -46,6 +47,13 @@ std::string hex(std::uint16_t value)
   return text;
 }
 
+/// The drive's own no, not silence or damage.
+bool isRefusal(std::uint16_t error_id)
+{
+  return error_id != 0 && error_id != wire::ERROR_TIMEOUT && error_id != wire::ERROR_DAMAGED &&
+         error_id != wire::ERROR_PORT_LOST;
+}
+
 bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, double patience)
 {
   if (!condition)
@@ -73,6 +81,8 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , settings(drive, config.node)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
+  , offline_after_(offline_after)
+  , exchanges_without_data_(offline_after)
 {
 }
 
@@ -111,12 +121,12 @@ bool Inverter::onTrial() const
   return on_trial_;
 }
 
-Duration Inverter::endTrial()
+Duration Inverter::endTrial(std::uint16_t error_id)
 {
   on_trial_ = false;
   refresh_tries = 0;
   settings_tries = 0;
-  forgetDrive();
+  forgetDrive(!isRefusal(error_id));
   // What was lost or refused is paid for in full, what brought something as far as it does not delay the next probe for long.
   return std::max(trial_waste_, std::min(trial_cost_, seconds(MOST_PAID_FOR_DATA_S)));
 }
@@ -163,24 +173,16 @@ bool Inverter::overdue(TimePoint now, Duration period) const
   return !offline_ && liveness.overdue(now, period);
 }
 
-std::string Inverter::offlineReason() const
-{
-  const std::string why = exchange_error_ == wire::ERROR_PORT_LOST ? "" : liveness.reason();
-  return why.empty() ? errorText(exchange_error_) : why;
-}
-
 void Inverter::goOffline(std::uint16_t error_id)
 {
+  // What refuses to tell its status has been there all the time: what it is need not be asked again.
+  const bool refused = isRefusal(error_id);
   offline_ = true;
   on_trial_ = false;
   probed_ = false;
   known_ = false;
   exchange_error_ = error_id;
-  if (command_error_ == ERROR_LOCKED || command_error_ == ERROR_CANCELLED)
-  {
-    // That it is away says more.
-    acceptCommand();
-  }
+  command_error_.wentOffline();
   velocityConfirmed();
   interlock.offline();
   stop.forgetConfirmation();
@@ -189,11 +191,11 @@ void Inverter::goOffline(std::uint16_t error_id)
   reset_active = false;
   // From now on nothing of it is answered, and that is what users are told.
   lost_writes.lower();
-  forgetDrive();
+  forgetDrive(!refused);
 }
 
-/// Another drive may stand there now, or the same one may have been switched off and on.
-void Inverter::forgetDrive()
+/// What was read of it counts no more; after silence another drive may stand there, or it may have been switched off and on.
+void Inverter::forgetDrive(bool after_silence)
 {
   leftover_judged_ = false;
   early_trip_ = false;
@@ -205,7 +207,10 @@ void Inverter::forgetDrive()
   setting_not_before = TimePoint();
   movement.forgetWords();
   refresh.forget();
-  settings.restart();
+  if (after_silence)
+  {
+    settings.restart();
+  }
   operation_seen_ = false;
   operation_off_since_.reset();
 }
@@ -251,6 +256,10 @@ wire::Request Inverter::prepared(wire::Request request) const
   request.response_timeout = seconds(config.response_timeout);
   request.reply_delay = settings.replyDelay();
   request.quiet_before = seconds(drive.profile().quiet_before);
+  if (config.modbus_tcp)
+  {
+    request.own_exceptions = ownExceptions(drive.profile().exceptions, exchanges_without_data_ < offline_after_);
+  }
   return request;
 }
 
@@ -341,8 +350,11 @@ void Inverter::dropBlock(const std::string& why)
   refresh.useBlock(std::nullopt);
 }
 
-void Inverter::noteExchange(wire::Outcome outcome)
+void Inverter::noteExchange(const wire::Reply& reply)
 {
+  const wire::Outcome outcome = reply.outcome;
+  gateway_code_ = reply.gateway_code;
+  exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
   run_shown_at_.reset();
   if (outcome == wire::Outcome::Ok)
   {
@@ -384,6 +396,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     return;
   }
+  exchanges_without_data_ = 0;
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
     block_note_ = "it is selected but not in effect, or the drive refuses it";
@@ -423,6 +436,11 @@ bool Inverter::mayRepeatWords(TimePoint now) const
 {
   return run_shown_at_ && now - *run_shown_at_ < seconds(RUN_EVIDENCE_S) && *run_shown_at_ >= movement.runChangedAt() &&
          movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
+}
+
+bool Inverter::mustBeSeenRunning() const
+{
+  return movement.turnLostAt() && (drive.reports("operation") || drive.reports("running"));
 }
 
 bool Inverter::mayRun() const
@@ -466,6 +484,7 @@ Duration Inverter::slowestReply() const
 void Inverter::lateReply(Duration delay)
 {
   latest_late_reply_ = std::max(latest_late_reply_, delay);
+  record.noteLate();
 }
 
 // --- judgement -------------------------------------------------------------------------------------------------------
@@ -476,6 +495,7 @@ Judgement Inverter::judge(TimePoint now)
   const drive::Monitor& monitor = refresh.fresh();
   noteBack();
   liveness.complete(now);
+  record.restart();
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
   const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
@@ -625,6 +645,14 @@ void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Time
   }
   at_rest_seen_ = false;
   unexpected_motion_ = false;
+  if (movement.turnLostAt() && sent_at > *movement.turnLostAt())
+  {
+    movement.seenRunning();
+    if (!*operation)
+    {
+      judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
+    }
+  }
   operation_seen_ = operation_seen_ || *operation;
   const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
@@ -671,35 +699,62 @@ InverterStatus Inverter::status(TimePoint now) const
   status.reset_active = reset_active;
   status.stop_active = stop.pending();
   status.locked = interlock.locked(now);
-  showError(status);
+  showError(now, status);
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
   return status;
 }
 
-/// The one that says most: why it is locked more than that it is, a command's own more than a single exchange's.
-void Inverter::showError(InverterStatus& status) const
+Obstacles Inverter::obstacles() const
 {
-  if (lost_writes.raised())
+  Obstacles obstacles;
+  obstacles.offline = offline_;
+  obstacles.stop_pending = interlock.stopPending();
+  obstacles.reset_active = reset_active;
+  obstacles.in_setup = inSetup();
+  obstacles.wrong_drive = !wrongDrive().empty();
+  return obstacles;
+}
+
+/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
+void Inverter::showError(TimePoint now, InverterStatus& status) const
+{
+  const bool away = status.communication_error && exchange_error_ != 0;
+  if (away && !command_error_.countsWhileOffline())
+  {
+    status.error_id = exchange_error_;
+    status.error_text = exchangeText();
+  }
+  else if (lost_writes.raised())
   {
     status.error_id = wire::ERROR_TIMEOUT;
     status.error_text = lost_writes.text();
   }
-  else if (command_error_ != 0)
+  else if (command_error_.id() != 0)
   {
-    status.error_id = command_error_;
-    status.error_text = command_error_text_;
+    Obstacles now_there = obstacles();
+    now_there.locked = interlock.locked(now);
+    status.error_id = command_error_.id();
+    status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
   }
   else if (velocity_error_ != 0)
   {
     status.error_id = velocity_error_;
-    status.error_text = velocity_error_text_;
+    status.error_text = "the last velocity was not carried out: " + velocity_error_text_;
   }
   else if (exchange_error_ != 0)
   {
     status.error_id = exchange_error_;
-    status.error_text = offline_ ? offlineReason() : errorText(exchange_error_);
+    status.error_text = exchangeText();
   }
+}
+
+/// Why it is offline; else in the drive's own words where it has answered.
+std::string Inverter::exchangeText() const
+{
+  const std::string why = offline_ && exchange_error_ != wire::ERROR_PORT_LOST ? liveness.reason() : "";
+  const std::string text = why.empty() ? drive.exceptionText(exchange_error_) : why;
+  return text.empty() ? errorText(exchange_error_, gateway_code_) : text;
 }
 
 void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
@@ -716,14 +771,17 @@ void Inverter::velocityConfirmed()
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
 {
-  command_error_ = error_id;
-  command_error_text_ = text;
+  command_error_.set(error_id, text, obstacles());
+}
+
+void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons)
+{
+  command_error_.setForOther(error_id, reasons);
 }
 
 void Inverter::acceptCommand()
 {
-  command_error_ = 0;
-  command_error_text_.clear();
+  command_error_.clear();
 }
 
 void Inverter::noteExchangeError(std::uint16_t error_id)
@@ -731,13 +789,58 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
   exchange_error_ = error_id;
 }
 
-std::vector<Finding> Inverter::errors() const
+void Inverter::noteProbed(const wire::Reply& reply)
+{
+  // One that is answered is no status: what was missing is still missing.
+  const bool port_is_back = exchange_error_ == wire::ERROR_PORT_LOST;
+  const bool answered = reply.outcome == wire::Outcome::Ok;
+  if (offline_ && (!answered || port_is_back))
+  {
+    exchange_error_ = answered ? wire::ERROR_TIMEOUT : reply.error_id;
+  }
+}
+
+std::string Inverter::onlineText() const
+{
+  return "online; locked until it is sent 0, or nothing for " + wire::shownDuration(interlock.silenceNeeded()) +
+         (drive.sequence("forward") == nullptr && drive.sequence("reverse") == nullptr
+              ? "; it gets no velocity, see /diagnostics"
+              : "");
+}
+
+std::string Inverter::offlineReason() const
+{
+  const std::string seen = record.text(drive);
+  return exchangeText() +
+         (seen.empty() || exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
+}
+
+std::string Inverter::offlineText(TimePoint now) const
+{
+  std::string text = "offline (" + hex(exchange_error_) + " " + offlineReason() + "; last answer ";
+  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
+  return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
+}
+
+/// Before the first complete status.
+std::string Inverter::silenceText() const
+{
+  const std::string seen = record.text(drive);
+  return seen.empty() ? "has not been asked yet" : "no complete status yet: " + seen + "; " + record.advice();
+}
+
+std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
+  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+                                           "), since the port is not open: what to do about it is told of the bus" });
+    return findings;
+  }
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " + offlineReason() +
-                                           "); check supply, wiring, station number and serial settings" });
+    findings.push_back({ Level::Error, offlineText(now) });
     return findings;
   }
   if (lost_writes.raised())
@@ -761,11 +864,11 @@ std::vector<Finding> Inverter::errors() const
 
 std::vector<Finding> Inverter::findings(TimePoint now) const
 {
-  std::vector<Finding> findings = errors();
+  std::vector<Finding> findings = errors(now);
   const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
   if (!offline_ && !known_)
   {
-    warn("has not answered yet");
+    warn(silenceText());
   }
   for (const Finding& finding : settings.findings())
   {

@@ -59,7 +59,7 @@ Job::Progress Job::refusedByDrive(const wire::Reply& reply, const std::string& w
 
 Job::Progress Job::lost(const wire::Reply& reply)
 {
-  return fail(reply.error_id, errorText(reply.error_id));
+  return fail(reply.error_id, errorText(reply.error_id, reply.gateway_code));
 }
 
 // --- reset -----------------------------------------------------------------------------------------------------------

@@ -153,9 +153,9 @@ std::vector<std::size_t> Scheduler::members(CommandId id) const
 
 void Scheduler::readSoon(std::size_t inverter)
 {
-  if (!isPutOff(inverter))
+  if (std::find(read_soon_.begin(), read_soon_.end(), inverter) == read_soon_.end())
   {
-    put_off_.push_back(inverter);
+    read_soon_.push_back(inverter);
   }
 }
 
@@ -250,8 +250,9 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
   // The further reads of a refresh that a deadline began are part of it: they don't count, and they don't end the row.
   const bool goes_on = pick.what == Pick::What::Refresh && std::find(half_refreshed_.begin(), half_refreshed_.end(),
                                                                      pick.inverter) != half_refreshed_.end();
-  deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on ? deadlines_in_a_row_ : 0;
   const bool stop = pick.what == Pick::What::Stop;
+  // Nor do stops, which belong to nobody's row.
+  deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on || stop ? deadlines_in_a_row_ : 0;
   stops_in_a_row_ = stop ? stops_in_a_row_ + 1 : let_through_ ? stops_in_a_row_ : 0;
   if (stop)
   {
@@ -262,7 +263,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
 
 void Scheduler::forgetOffline(const std::vector<InverterView>& views)
 {
-  for (auto* waiting : { &half_refreshed_, &put_off_ })
+  for (auto* waiting : { &half_refreshed_, &put_off_, &read_soon_ })
   {
     waiting->erase(
         std::remove_if(waiting->begin(), waiting->end(), [&](std::size_t index) { return views[index].offline; }),
@@ -320,6 +321,10 @@ Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterVie
 /// Everything but stops and what wants to stop.
 std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vector<InverterView>& views)
 {
+  if (const auto read = pickReadSoon(now, views))
+  {
+    return read;
+  }
   if (last_lost_)
   {
     // Who did not answer has no right to the next exchange, whatever it is for.
@@ -328,6 +333,22 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
   }
   const auto going_on = chooseGoingOn(now, views);
   return going_on ? going_on : chooseInTurn(now, views);
+}
+
+/// Whether a drive is away decides over everybody's time.
+std::optional<Pick> Scheduler::pickReadSoon(TimePoint now, const std::vector<InverterView>& views) const
+{
+  const auto soon = std::find_if(read_soon_.begin(), read_soon_.end(), [&](std::size_t index) {
+    return index != last_inverter_ && views[index].refresh_not_before <= now;
+  });
+  if (soon == read_soon_.end())
+  {
+    return std::nullopt;
+  }
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *soon;
+  return pick;
 }
 
 std::optional<Pick> Scheduler::chooseForAnother(TimePoint now, const std::vector<InverterView>& views)
@@ -362,7 +383,7 @@ std::optional<Pick> Scheduler::goOnWithUnit(TimePoint now, const std::vector<Inv
   }
   const auto command = pickCommand(now, false);
   const bool another_one = command && command->command != last_command_;
-  return another_one && backgroundIsDue(views) ? std::nullopt : command;
+  return another_one && backgroundIsDue(now, views) ? std::nullopt : command;
 }
 
 /// The words of one status belong together.
@@ -399,9 +420,28 @@ bool Scheduler::deadlinesMayGo(const std::vector<InverterView>& views) const
   return deadlines_in_a_row_ < supervised;
 }
 
-bool Scheduler::backgroundIsDue(const std::vector<InverterView>& views) const
+/// One exchange earlier while commands wait: at the eighth it may be the turn of who had the last exchange.
+bool Scheduler::backgroundIsDue(TimePoint now, const std::vector<InverterView>& views) const
 {
-  return exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND && pickBackground(views);
+  const auto background = pickBackground(views);
+  const unsigned exchange = exchanges_without_background_ + 1;
+  const bool early = exchange + 1 == EXCHANGES_PER_BACKGROUND && readyCommands(now) > 0;
+  return background && (exchange >= EXCHANGES_PER_BACKGROUND || (early && background->inverter != last_inverter_));
+}
+
+/// The long jobs' turn, but not for who had the last exchange while another one waits.
+std::optional<Pick> Scheduler::backgroundInTurn(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto background = pickBackground(views);
+  if (!background || background->inverter != last_inverter_)
+  {
+    return background;
+  }
+  const auto avoided = avoided_;
+  avoided_ = last_inverter_;
+  const auto other = pickCommand(now, false);
+  avoided_ = avoided;
+  return other ? other : background;
 }
 
 std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<InverterView>& views)
@@ -412,9 +452,9 @@ std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<Inv
     return deadline;
   }
   const auto background = pickBackground(views);
-  if (backgroundIsDue(views))
+  if (backgroundIsDue(now, views))
   {
-    return background;
+    return backgroundInTurn(now, views);
   }
   const auto probe = pickProbe(now, views);
   if (probe && probe->what == Pick::What::Stop)
@@ -446,7 +486,7 @@ std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<Inv
 
 std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const
 {
-  using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
+  using Key = std::tuple<bool, bool, unsigned, bool, std::uint64_t, std::size_t>;
   std::optional<Key> best;
   for (std::size_t index = 0; index < views.size(); ++index)
   {
@@ -460,7 +500,9 @@ std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<Inverte
     {
       continue;
     }
-    const Key key(view.offline, view.stop_attempts, view.stop_written, last_stop_exchange_[index], index);
+    // One of a flood goes behind those that take RUN off, and behind their read-backs.
+    const Key key(view.offline, view.stop_repeats, view.stop_attempts, view.stop_written, last_stop_exchange_[index],
+                  index);
     if (!best || key < *best)
     {
       best = key;
@@ -472,7 +514,7 @@ std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<Inverte
   }
   Pick pick;
   pick.what = Pick::What::Stop;
-  pick.inverter = std::get<4>(*best);
+  pick.inverter = std::get<5>(*best);
   pick.probe = std::get<0>(*best);
   return pick;
 }
@@ -755,6 +797,7 @@ void Scheduler::doneRefresh(const Pick& pick, bool more, bool answered)
 {
   commands_in_a_row_ = 0;
   silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
+  read_soon_.erase(std::remove(read_soon_.begin(), read_soon_.end(), pick.inverter), read_soon_.end());
   const bool was_put_off = isPutOff(pick.inverter);
   put_off_.erase(std::remove(put_off_.begin(), put_off_.end(), pick.inverter), put_off_.end());
   cycle_first_ = was_put_off && !(more && answered);

@@ -313,7 +313,44 @@ std::string Drive::unconfirmedText() const
   {
     names += (names.empty() ? "" : ", ") + mark;
   }
-  return profile_.unconfirmed.empty() ? "" : names + "; " + adviceFor(profile_.unconfirmed);
+  const std::string unneeded = skippableUnconfirmed();
+  return profile_.unconfirmed.empty()
+             ? ""
+             : names + "; " + adviceFor(profile_.unconfirmed) +
+                   (unneeded.empty() ? "" : "; what nobody needs can be left out: skip: [" + unneeded + "]");
+}
+
+/// Names for `skip` in which something is unconfirmed.
+std::string Drive::skippableUnconfirmed() const
+{
+  std::set<std::string> names;
+  for (const auto& [field, item] : profile_.status)
+  {
+    if (!item.unconfirmed.empty() && skippableFields().count(field) != 0)
+    {
+      names.insert(field);
+    }
+  }
+  if (profile_.store_busy && !profile_.store_busy->unconfirmed.empty())
+  {
+    names.insert("store_busy");
+  }
+  for (const auto& entry : profile_.history.entries)
+  {
+    const bool open = std::any_of(entry.begin(), entry.end(), [](const auto& field) {
+      return field.first != "code" && !field.second.unconfirmed.empty();
+    });
+    if (open)
+    {
+      names.insert("trip_memory");
+    }
+  }
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
 }
 
 /// A value that is known but unproven is confirmed; one that nobody knows is given.
@@ -355,11 +392,15 @@ bool Drive::wears(const std::string& point) const
 wire::Request Drive::write(std::uint8_t station, const std::string& point, std::uint32_t raw) const
 {
   const auto found = profile_.points.find(point);
-  wire::Request result =
-      request(station, found == profile_.points.end() ? wire::Bytes() : encodeWrite(found->second.item, raw, profile_));
-  // CompoWay/F has letters for a broadcast, and a unit 0 like any other.
-  result.broadcast = station == 0 && profile_.protocol != "compoway_f";
-  result.expects_reply = !result.broadcast;
+  return request(station,
+                 found == profile_.points.end() ? wire::Bytes() : encodeWrite(found->second.item, raw, profile_));
+}
+
+wire::Request Drive::broadcast(const std::string& point, std::uint32_t raw) const
+{
+  wire::Request result = write(0, point, raw);
+  result.broadcast = true;
+  result.expects_reply = false;
   return result;
 }
 

@@ -159,7 +159,7 @@ bool GatewayRecord::takes(const Answer& answer)
 {
   const NumberHabit number = acceptableNumber(answer);
   const UnitHabit unit = unitHabit(current_.station, answer.unit);
-  if (number == NumberHabit::None || unit == UnitHabit::None)
+  if (mixed_ || number == NumberHabit::None || unit == UnitHabit::None)
   {
     return false;
   }
@@ -246,51 +246,43 @@ void GatewayRecord::givenUp(TimePoint now)
   }
 }
 
-std::deque<GatewayRecord::Asked>::iterator GatewayRecord::findOwed(const Answer& answer)
+/// The owed requests that \p answer could belong to, oldest first.
+std::vector<std::deque<GatewayRecord::Asked>::iterator> GatewayRecord::findOwed(const Answer& answer)
 {
-  const auto fits = [&answer](const Asked& owed) {
-    return !answer.shape.empty() && beginsWith(owed.shape, answer.shape) &&
-           unitHabit(owed.station, answer.unit) != UnitHabit::None;
-  };
-  // What the gateway is known to do goes before what it might do.
-  const unsigned known = habits_ == 0 ? static_cast<unsigned>(NumberHabit::Same) : habits_;
-  for (const unsigned habits : { known, ~0U })
+  // What the gateway is known to do, and nothing else; as long as nothing is known, anything.
+  const unsigned habits = trusted_ ? static_cast<unsigned>(NumberHabit::Same) : habits_ == 0 ? ~0U : habits_;
+  std::vector<std::deque<Asked>::iterator> found;
+  for (auto owed = owed_.begin(); owed != owed_.end(); ++owed)
   {
-    const auto found = std::find_if(owed_.begin(), owed_.end(), [&](const Asked& owed) {
-      return fits(owed) && isIn(numberHabit(owed.number, answer.number), habits);
-    });
-    if (found != owed_.end())
+    if (!answer.shape.empty() && beginsWith(owed->shape, answer.shape) &&
+        unitHabit(owed->station, answer.unit) != UnitHabit::None &&
+        isIn(numberHabit(owed->number, answer.number), habits))
     {
-      return found;
+      found.push_back(owed);
     }
   }
-  // One that was taken for the answer to another one of its shape leaves this one behind.
-  return quirky_ ? std::find_if(owed_.begin(), owed_.end(), fits) : owed_.end();
-}
-
-/// As long as nothing is known of the gateway: true if \p answer could as well be that of the request before \p found.
-bool GatewayRecord::isOneBehind(const Asked& found, const Answer& answer) const
-{
-  const auto could_be = [&](const Asked& owed) {
-    return &owed != &found && !owed.silent && beginsWith(owed.shape, answer.shape) &&
-           numberHabit(owed.number, answer.number) == NumberHabit::PlusOne &&
-           unitHabit(owed.station, answer.unit) != UnitHabit::None;
-  };
-  return !trusted_ && !quirky_ && found.number == answer.number && std::any_of(owed_.begin(), owed_.end(), could_be);
+  return found;
 }
 
 std::optional<GatewayRecord::Asked> GatewayRecord::takeLate(const Answer& answer)
 {
   const auto found = findOwed(answer);
-  if (found == owed_.end())
+  if (found.empty())
   {
     return std::nullopt;
   }
-  const Asked request = *found;
-  mixed_ = mixed_ || isOneBehind(request, answer);
-  owed_.erase(found);
+  Asked request = *found.front();
+  owed_.erase(found.front());
   const NumberHabit number = numberHabit(request.number, answer.number);
   const UnitHabit unit = unitHabit(request.station, answer.unit);
+  if (found.size() > 1)
+  {
+    // Most likely the oldest one's, but nothing that comes can be told apart for certain any more.
+    mixed_ = true;
+    request.ticket = 0;
+    return request;
+  }
+  habits_ |= static_cast<unsigned>(number);
   if (number != NumberHabit::Same || (unit != UnitHabit::Same && !request.silent))
   {
     noteQuirk(number, unit);
@@ -341,7 +333,7 @@ std::string GatewayRecord::quirk() const
   unit(UnitHabit::Zero, "unit 0");
   unit(UnitHabit::One, "unit 1");
   unit(UnitHabit::Last, "unit 255");
-  return text.empty() ? text : "the gateway's replies bear " + text + " instead of what was asked";
+  return text.empty() ? text : "its replies bear " + text + " instead of what was asked";
 }
 
 std::string GatewayRecord::mustReopen(TimePoint now) const
@@ -353,7 +345,7 @@ std::string GatewayRecord::mustReopen(TimePoint now) const
   const bool overdue = std::any_of(owed_.begin(), owed_.end(), [this, now](const Asked& owed) {
     return !owed.silent && owed.request_end + timeout_ <= now;
   });
-  return quirky_ && overdue ? "a request was not answered, and " + quirk() : "";
+  return quirky_ && overdue ? "a request to the gateway was not answered, and " + quirk() : "";
 }
 
 void GatewayRecord::forgetOld(TimePoint now)

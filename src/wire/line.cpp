@@ -87,13 +87,19 @@ bool Line::settle()
 
 bool Line::mayAsk(const Request& request) const
 {
-  return mayAskAt(request) <= clock_.now();
+  // One look at the clock: two of them would differ.
+  const TimePoint now = clock_.now();
+  return mayAskAt(request, now) <= now;
 }
 
 TimePoint Line::mayAskAt(const Request& request) const
 {
+  return mayAskAt(request, clock_.now());
+}
+
+TimePoint Line::mayAskAt(const Request& request, TimePoint now) const
+{
   const std::string shape = protocol_.shape(request);
-  const TimePoint now = clock_.now();
   return gateway_ ? gateway_->mayAskAt(shape, now) : std::max(bars_.barredUntil(shape), now);
 }
 

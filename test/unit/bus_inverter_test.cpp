@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bus_fixture.h"
+#include "inverter_bus/bus/own_exceptions.h"
 
 namespace inverter_bus
 {
@@ -158,6 +159,88 @@ TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
   LoopbackKnowledge refused;
   refused.note(wire::Outcome::Exception);
   EXPECT_FALSE(refused.usable());
+}
+/// An MX2 behind a Modbus TCP gateway.
+class Mx2BehindAGateway : public testing::Test
+{
+protected:
+  static InverterConfig config()
+  {
+    InverterConfig config = inverterConfig();
+    config.modbus_tcp = true;
+    return config;
+  }
+
+  bool isOwn(unsigned code) const
+  {
+    return inverter_.prepared(wire::Request()).own_exceptions[code];
+  }
+
+  const InverterConfig config_ = config();
+  drive::Drive mx2_ = shipped("omron_mx2");
+  Inverter inverter_{ 0, config_, mx2_, 3, 1 };
+};
+
+TEST_F(Mx2BehindAGateway, whatItsProfileListsIsItsOwnAndAllElseTheGateways)
+{
+  for (unsigned code = 1; code < 256; ++code)
+  {
+    const bool listed = code <= 3 || (code >= 0x21 && code <= 0x23) || code == 0x31 || code == 0x32;
+    EXPECT_EQ(listed, isOwn(code)) << code;
+  }
+}
+
+TEST(Mx2OnAWire, isAskedNothingOfTheKind)
+{
+  const InverterConfig config = inverterConfig();
+  const drive::Drive mx2 = shipped("omron_mx2");
+  const Inverter inverter(0, config, mx2, 3, 1);
+  EXPECT_EQ(wire::everyExceptionOfADrive(), inverter.prepared(wire::Request()).own_exceptions);
+}
+
+TEST_F(Mx2BehindAGateway, theGatewaysCodeIsShown)
+{
+  wire::Reply reply = lost();
+  reply.gateway_code = 0xE0;
+  for (int i = 0; i < 3; ++i)
+  {
+    inverter_.noteExchange(reply);
+    inverter_.failed(at(0), reply.error_id);
+  }
+  EXPECT_EQ("no reply in time (the gateway answered with exception E0H)", inverter_.status(at(0)).error_text);
+  inverter_.noteExchange(lost());
+  inverter_.failed(at(0), 0x0205);
+  EXPECT_EQ("no reply in time", inverter_.status(at(0)).error_text);
+}
+
+TEST(Vfs11BehindAGateway, refusesWith04OnlyWhileItSendsData)
+{
+  InverterConfig config = inverterConfig();
+  config.modbus_tcp = true;
+  const drive::Drive vfs11 = shipped("toshiba_vfs11");
+  Inverter inverter(0, config, vfs11, 3, 1);
+  const auto own = [&inverter] { return inverter.prepared(wire::Request()).own_exceptions[4]; };
+  EXPECT_FALSE(own()) << "it has never sent any";
+  inverter.refresh.next(at(0));
+  const wire::Reply data = reply("03 02 00 00", at(10), at(0));
+  inverter.noteExchange(data);
+  inverter.noteStatus(data, true);
+  EXPECT_TRUE(own());
+  inverter.noteExchange(exception(0x86, 4));
+  inverter.noteExchange(lost());
+  EXPECT_TRUE(own());
+  inverter.noteExchange(exception(0x86, 4));
+  EXPECT_FALSE(own()) << "three exchanges without data";
+}
+
+TEST(OwnExceptions, commonCodesUnlessTheProfileListsOthers)
+{
+  const wire::ExceptionCodes common = ownExceptions({}, true);
+  EXPECT_EQ(wire::ExceptionCodes().set(1).set(2).set(3), common);
+  EXPECT_EQ(wire::ExceptionCodes().set(2).set(6), ownExceptions({ { 2, "" }, { 6, "" } }, true));
+  EXPECT_EQ(wire::ExceptionCodes(), ownExceptions({ { 0x0A, "" }, { 0x0B, "" } }, true)) << "never a drive's";
+  EXPECT_FALSE(ownExceptions({ { 4, "" } }, false)[4]);
+  EXPECT_TRUE(ownExceptions({ { 4, "" } }, true)[4]);
 }
 }  // namespace
 }  // namespace bus

@@ -138,12 +138,20 @@ TEST(DriveFrames, WattHoursReadAsTheTwoWordsOfARealDrive)
   EXPECT_DOUBLE_EQ(drive.decodeParameter(watt_hours, bytes("03 04 00 04 93 E0")), 30000.0);
 }
 
-TEST(DriveFrames, StationZeroMakesABroadcastThatNobodyAnswers)
+TEST(DriveFrames, NobodyAnswersABroadcast)
 {
-  const wire::Request request = shipped("omron_mx2").write(0, "run", 0);
+  const wire::Request request = shipped("omron_mx2").broadcast("run", 0);
   EXPECT_EQ(printed(request), "00 05 00 00 00 00");
   EXPECT_TRUE(request.broadcast);
   EXPECT_FALSE(request.expects_reply);
+}
+
+TEST(DriveFrames, StationZeroAloneMakesNoBroadcast)
+{
+  const wire::Request request = shipped("omron_mx2").write(0, "run", 0);
+  EXPECT_EQ(printed(request), "00 05 00 00 00 00");
+  EXPECT_FALSE(request.broadcast);
+  EXPECT_TRUE(request.expects_reply) << "a drive with a port of its own may have this number";
 }
 
 TEST(DriveFrames, AnOrdinaryRequestExpectsAReply)
@@ -442,7 +450,7 @@ TEST(TecoFrames, OtherStationsAndTheBroadcastStop)
 {
   const Drive drive = shipped("teco_7200ma");
   EXPECT_EQ(printed(drive.write(31, "command", 1)), "1F 10 00 00 00 01 02 00 01");
-  const wire::Request broadcast = drive.write(0, "command", 0);
+  const wire::Request broadcast = drive.broadcast("command", 0);
   EXPECT_EQ(printed(broadcast), "00 10 00 00 00 01 02 00 00");
   EXPECT_FALSE(broadcast.expects_reply);
 }

@@ -90,6 +90,13 @@ public:
     gone_ = false;
   }
 
+  /// What was still to arrive does not: another connection.
+  void cutOff()
+  {
+    arriving_.clear();
+    answers_.clear();
+  }
+
   const std::vector<Bytes>& sent() const
   {
     return sent_;

@@ -4,12 +4,12 @@
 #define INVERTER_BUS_BUS_CONFIGURATION_H
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "inverter_bus/config/value.h"
 #include "inverter_bus/drive/drive.h"
 #include "inverter_bus/wire/line.h"
 #include "inverter_bus/wire/serial_port.h"
@@ -20,28 +20,10 @@ namespace inverter_bus
 namespace bus
 {
 /// A configuration value as it came from the parameter server or from a YAML file, before anybody judged it.
-struct Value
-{
-  enum class Type
-  {
-    None,
-    Boolean,
-    Integer,
-    Number,
-    Text,
-    List,
-    Map
-  };
-  Type type = Type::None;
-  bool boolean = false;
-  std::int64_t integer = 0;
-  double number = 0.0;
-  std::string text;
-  std::vector<Value> list;
-  std::map<std::string, Value> map;
-};
+using config::Value;
 
-/// A scan list file as a tree. \throws drive::ConfigurationError with file and line.
+/// A scan list file as roslaunch would put it onto the parameter server (config/yaml.h).
+/// \throws drive::ConfigurationError one line: file, line, key, what is wrong, what is allowed
 Value readYamlFile(const std::string& path);
 
 /// What happens to a velocity beyond the maximum (contract, 8.5).
@@ -56,6 +38,7 @@ struct InverterConfig
 {
   std::string name;
   std::uint8_t node = 0;
+  bool modbus_tcp = false;  ///< resolved: on tcp://
   std::string drive;
   double hz_per_unit = 1.0;
   double max_velocity = 0.0;  ///< resolved: never above the profile's maximum / |hz_per_unit|
@@ -72,6 +55,14 @@ struct InverterConfig
   /// Status fields that are left out: not read, NaN, and their unconfirmed items are not reported.
   std::vector<std::string> skip;
   drive::ProfileChanges changes;
+
+  /// A unit number that no station of a serial line has (Modbus over serial line V1.02, section 2.2): of a drive with an
+  /// Ethernet port of its own. Only on tcp://.
+  bool ownPort() const
+  {
+    return modbus_tcp && (node == 0 || node > LAST_SERIAL_STATION);
+  }
+  static constexpr std::uint8_t LAST_SERIAL_STATION = 247;
 };
 
 /// The private parameters of the node.
@@ -112,6 +103,8 @@ struct Configuration
 {
   BusConfig bus;
   std::vector<drive::Drive> drives;
+  /// What was taken and should be mended: one line each, for the log and for whoever checks a file.
+  std::vector<std::string> warnings;
 };
 
 /// Judges the node's parameters (contract, section 2). \p place names the source in messages ("~" for ROS parameters or a

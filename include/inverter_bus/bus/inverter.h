@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/command_error.h"
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/link_record.h"
 #include "inverter_bus/bus/liveness.h"
 #include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
@@ -98,6 +100,8 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  /// What came since the last complete status.
+  LinkRecord record;
   LostWrites lost_writes;
   Liveness liveness;
 
@@ -109,8 +113,8 @@ public:
   void beginTrial(Duration delay);
   /// Offline, but it answers: its settings and its status are being read, at the probes' cost if that leads to nothing.
   bool onTrial() const;
-  /// The trial has led to nothing. Returns what it has cost.
-  Duration endTrial();
+  /// The trial has led to nothing, since an exchange ended with \p error_id. Returns what it has cost.
+  Duration endTrial(std::uint16_t error_id);
   /// Offline, and it is not even known to answer.
   bool silent() const;
   /// An exchange with it has ended (bookkeeping of probes and trials).
@@ -124,8 +128,6 @@ public:
   bool overdue(TimePoint now, Duration period) const;
   /// The port is gone, or the inverter is given up: offline at once.
   void goOffline(std::uint16_t error_id);
-  /// Why it is offline, in words.
-  std::string offlineReason() const;
   bool offline() const;
   /// A complete status has come since start or return.
   bool known() const;
@@ -150,7 +152,7 @@ public:
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// An exchange ended; a lost one ends all that was proven of RUN.
-  void noteExchange(wire::Outcome outcome);
+  void noteExchange(const wire::Reply& reply);
   /// It was a read of a refresh (that goes on, with \p more): what it shows of RUN.
   void noteStatus(const wire::Reply& reply, bool more);
   /// A parameter was written through this node.
@@ -161,6 +163,8 @@ public:
   bool mayRepeatWords(TimePoint now) const;
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
+  /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+  bool mustBeSeenRunning() const;
   /// Why the drive gets no command but a stop; empty: it does.
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.
@@ -172,6 +176,10 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
+  /// What the log says when it answers (again), and what is to be done before it moves.
+  std::string onlineText() const;
+  /// What the log says when it goes offline.
+  std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
   /// After a complete refresh.
@@ -184,6 +192,8 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
+  /// As a member of a group that was refused for the sake of another one.
+  void refuseForOther(std::uint16_t error_id, const std::string& reasons);
   void acceptCommand();
   /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
   /// would hide it.
@@ -191,6 +201,8 @@ public:
   /// One was confirmed, or a 0 came.
   void velocityConfirmed();
   void noteExchangeError(std::uint16_t error_id);
+  /// How a probe ended: while it is offline that is the reason, not the port that was gone before.
+  void noteProbed(const wire::Reply& reply);
 
   bool reset_active = false;
   /// Frames of a job have led the drive into its setup area.
@@ -206,9 +218,8 @@ public:
   unsigned probes = 0;
 
 private:
-  void forgetDrive();
+  void forgetDrive(bool after_silence);
   void noteBack();
-  void showError(InverterStatus& status) const;
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
@@ -218,8 +229,16 @@ private:
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
-  std::vector<Finding> errors() const;
+  std::vector<Finding> errors(TimePoint now) const;
+  std::string exchangeText() const;
+  std::string offlineText(TimePoint now) const;
+  std::string silenceText() const;
+  Obstacles obstacles() const;
+  void showError(TimePoint now, InverterStatus& status) const;
 
+  int offline_after_;
+  /// Since its last status words; counted up to offline_after_.
+  int exchanges_without_data_;
   bool known_ = false;  ///< a complete status has come since start or return
   bool ever_known_ = false;
   bool offline_ = false;
@@ -230,8 +249,9 @@ private:
   /// Since the last trial, and nobody has answered it yet.
   bool probed_ = false;
   std::uint16_t exchange_error_ = 0;
-  std::uint16_t command_error_ = 0;
-  std::string command_error_text_;
+  /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
+  std::uint8_t gateway_code_ = 0;
+  CommandError command_error_;
   std::uint16_t velocity_error_ = 0;
   std::string velocity_error_text_;
   TimePoint last_reply_;

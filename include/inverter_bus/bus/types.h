@@ -28,7 +28,7 @@ constexpr std::uint16_t ERROR_LOCKED = 0xB005;
 constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
 
 /// One sentence for an error id that needs no drive to explain it.
-std::string errorText(std::uint16_t error_id);
+std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code = 0);
 
 /// The drive has no such request: Modbus exceptions 01 to 03 (function, address, count) speak of the request itself, later
 /// ones of the moment (busy, locked, running). CompoWay/F has response codes for both.
@@ -135,6 +135,9 @@ struct Finding
 {
   Level level = Level::Ok;
   std::string text;
+  /// Lines of the log that tell the state of the same thing (the port, an inverter's link) have the same subject: a new
+  /// one replaces the one before it. Empty: a line of its own.
+  std::string subject = {};
 };
 
 /// What /diagnostics shows of an inverter.

@@ -157,6 +157,9 @@ public:
   bool wears(const std::string& point) const;
   /// Request that writes \p raw to \p point.
   wire::Request write(std::uint8_t station, const std::string& point, std::uint32_t raw) const;
+  /// The same to all drives of the bus; none answers. (Station 0 alone makes no broadcast: behind its own port a drive may
+  /// have that number, and CompoWay/F counts from 0.)
+  wire::Request broadcast(const std::string& point, std::uint32_t raw) const;
   /// Set-point of \p frequency_hz (unsigned) in counts of the point `frequency`, rounded to nearest.
   std::uint32_t frequencyCounts(double frequency_hz) const;
   /// [Hz] of one count.
@@ -205,6 +208,7 @@ public:
 
 private:
   std::string adviceFor(const std::set<std::string>& marks) const;
+  std::string skippableUnconfirmed() const;
 
   Profile profile_;
   std::vector<ReadBlock> fast_blocks_;

@@ -100,7 +100,8 @@ public:
   bool takes(const Answer& answer);
   /// The request on its way is not waited for any longer.
   void givenUp(TimePoint now);
-  /// The owed request that \p answer, which nobody waits for, belongs to; it is owed no longer. Nothing if there is none.
+  /// The owed request that \p answer, which nobody waits for, belongs to; it is owed no longer. Nothing if there is none;
+  /// without a ticket if several could have got it.
   std::optional<Asked> takeLate(const Answer& answer);
 
   /// Oldest first.
@@ -128,8 +129,7 @@ private:
   bool clashes(const Answer& answer, bool exact) const;
   void answered(const Answer& answer, bool exact);
   void noteQuirk(NumberHabit number, UnitHabit unit);
-  std::deque<Asked>::iterator findOwed(const Answer& answer);
-  bool isOneBehind(const Asked& found, const Answer& answer) const;
+  std::vector<std::deque<Asked>::iterator> findOwed(const Answer& answer);
   void forgetOld(TimePoint now);
 
   Duration timeout_{ std::chrono::seconds(3) };
@@ -148,7 +148,7 @@ private:
   bool quirky_ = false;
   /// A reply came that two requests could have got.
   bool mixed_ = false;
-  /// NumberHabit, of accepted answers on this connection.
+  /// NumberHabit, of all answers on this connection whose request was certain.
   unsigned habits_ = 0;
   /// NumberHabit and UnitHabit that should not be, since the start.
   unsigned wrong_numbers_ = 0;

@@ -150,6 +150,9 @@ public:
   Duration costUnanswered(const Request& request) const;
 
   const LineCounters& counters() const;
+  /// Of the open port, see Port.
+  std::optional<AdapterLatency> adapterLatency() const;
+
   /// Longest pause inside a reply that is waited out.
   Duration patience() const;
 
@@ -174,7 +177,7 @@ public:
   std::vector<Outstanding> outstanding() const;
   /// Modbus TCP: the gateway has shown on this connection that it keeps transaction numbers and units.
   bool gatewayTrusted() const;
-  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("the gateway's replies bear transaction number 0 ..."),
+  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies bear transaction number 0 ..."),
   /// as seen since the start; empty as long as it does not. Name it once.
   std::string gatewayQuirk() const;
   /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come
@@ -185,6 +188,7 @@ public:
 
 private:
   struct Waiting;
+  TimePoint mayAskAt(const Request& request, TimePoint now) const;
   bool settle(Duration quiet);
   bool send(const Bytes& frame, Reply& reply);
   Waiting startWaiting(const Request& request, TimePoint sent_at);

@@ -90,7 +90,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
   }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
-    log(Level::Ok, inverter.config.name + ": online", inverter.config.name);
+    log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))

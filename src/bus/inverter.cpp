@@ -710,6 +710,14 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
   exchange_error_ = error_id;
 }
 
+std::string Inverter::onlineText() const
+{
+  return "online; locked until it is sent 0, or nothing for " + wire::shownDuration(interlock.silenceNeeded()) +
+         (drive.sequence("forward") == nullptr && drive.sequence("reverse") == nullptr
+              ? "; it gets no velocity, see /diagnostics"
+              : "");
+}
+
 std::string Inverter::offlineReason() const
 {
   const std::string seen = record.text(drive);

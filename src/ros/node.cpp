@@ -37,7 +37,7 @@ std::optional<bus::Configuration> readNodeConfiguration()
 {
   try
   {
-    return bus::readConfiguration(readParameters(), "~", profileDirectory());
+    return bus::readConfiguration(readParameters(), "~", drive::shippedProfileDirectory());
   }
   catch (const drive::ConfigurationError& error)
   {
@@ -64,6 +64,10 @@ void logMistakes(const std::vector<drive::Drive>& drives)
 
 void logStart(const bus::Configuration& configuration, const bus::Bus& bus)
 {
+  for (const std::string& warning : configuration.warnings)
+  {
+    log(bus::Level::Warn, warning);
+  }
   for (const std::string& line : effectiveConfiguration(configuration.bus))
   {
     log(bus::Level::Ok, line);

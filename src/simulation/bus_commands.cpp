@@ -63,7 +63,10 @@ std::optional<TimePoint> takeEnd(CommandWords& words, TimePoint now)
 std::string showBus(SimulatedBus& bus)
 {
   const LineCounters& line = bus.line().counters();
+  const LineSettings& master = bus.line().options().settings;
   return joined({ { "plugged_in", bus.pluggedIn() ? "1" : "0" },
+                  { "master", std::to_string(master.baud_rate) + "/" + std::to_string(master.data_bits) +
+                                  letterOf(master.parity) + std::to_string(master.stop_bits) },
                   { "requests", std::to_string(line.requests) },
                   { "replies", std::to_string(line.replies) },
                   { "lost_gap", std::to_string(line.lost_gap) },

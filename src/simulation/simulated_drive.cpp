@@ -73,7 +73,23 @@ bool SimulatedDrive::answersDamaged() const
 
 bool SimulatedDrive::understandsLine() const
 {
-  return true;
+  if (!serial_told_ || !serial_ || !line_)
+  {
+    return !serial_told_ || serial_;
+  }
+  return serial_->understands(*line_) && (!stop_bits_matter_ || serial_->stop_bits == line_->stop_bits);
+}
+
+void SimulatedDrive::setLine(const LineSettings& line)
+{
+  line_ = line;
+}
+
+void SimulatedDrive::setSerial(const std::optional<LineSettings>& serial, bool stop_bits_matter)
+{
+  stop_bits_matter_ = stop_bits_matter;
+  serial_ = serial;
+  serial_told_ = true;
 }
 
 void SimulatedDrive::goDeaf(TimePoint until)

@@ -129,6 +129,14 @@ TEST(Texts, aMemberOfARefusedGroupIsToldThatAnotherOneWasTheReason)
   EXPECT_THAT(bus.status(1).error_text, HasSubstr("send 0"));
 }
 
+TEST(Texts, whoComesOnlineSaysWhatHasToBeDoneBeforeItMoves)
+{
+  VirtualBus bus(ONE_BELT);
+  bus.settleIn();
+  EXPECT_THAT(bus.logTexts(),
+              ::testing::Contains(HasSubstr("belt: online; locked until it is sent 0, or nothing for 500 ms")));
+}
+
 TEST(Texts, offlineSaysWhatCameInsteadOfAStatus)
 {
   VirtualBus bus(ONE_BELT);

@@ -163,6 +163,8 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
+  /// What the log says when it answers (again), and what is to be done before it moves.
+  std::string onlineText() const;
   /// What the log says when it goes offline.
   std::string offlineReason() const;
 

@@ -193,7 +193,6 @@ private:
   bool send(const Bytes& frame, Reply& reply);
   Waiting startWaiting(const Request& request, TimePoint sent_at);
   void waitForReply(Waiting& waiting, Reply& reply);
-  TimePoint mayAskAt(const Request& request, TimePoint now) const;
   TimePoint waitUntil(const Waiting& waiting) const;
   ReceiveResult receive(TimePoint deadline);
   bool consume(Waiting& waiting, Reply& reply);

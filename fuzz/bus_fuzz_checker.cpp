@@ -431,7 +431,7 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   }
   world_.drives()[index]->advance(now);
   const bool good = kind == ReplyKind::NORMAL;
-  lane.refused_at = good ? lane.refused_at : now;
+  lane.exception_at = good ? lane.exception_at : now;
   if (facts_.reads_frequency && good)
   {
     widen(index);

@@ -199,9 +199,9 @@ private:
     bool first_time = true;
     std::uint64_t served = 0;  ///< number of the request that the drive has heard last
     simulation::Bytes heard;
-    TimePoint lost_at;      ///< the last exchange without an answer
-    TimePoint refused_at;   ///< the last one that was answered by a refusal
-    unsigned silences = 0;  ///< exchanges in a row that it has not answered
+    TimePoint lost_at;       ///< the last exchange without an answer
+    TimePoint exception_at;  ///< the last one that was answered by a refusal
+    unsigned silences = 0;   ///< exchanges in a row that it has not answered
   };
   struct Call
   {

@@ -64,7 +64,7 @@ void Checker::checkWentOffline(TimePoint now, std::size_t index) const
   // Published before anybody has said that the exchange is over.
   const bool just_now = in_flight_ && facts_.inverter == index && !answered_;
   const bool lost = just_now || (lane.lost_at != TimePoint() && now - lane.lost_at < lately);
-  const bool refused = lane.refused_at != TimePoint() && now - lane.refused_at < lately;
+  const bool refused = lane.exception_at != TimePoint() && now - lane.exception_at < lately;
   const bool broken = !connected_ || now - connected_since_ < lately;
   if (!lost && !refused && !broken)
   {

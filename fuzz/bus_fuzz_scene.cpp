@@ -286,7 +286,7 @@ private:
     {
       // FC90 is 0 while it is healthy.
       facts.listed_trips = { 0, 1, 2 };
-      more += ", overrides: {status: {faulted: {register: 0xFC90, values: {0: 0, 1: 1, 2: 1}}}}";
+      more += ", overrides: {status: {faulted: {register: 0xFC90, values: {\"0\": 0, \"1\": 1, \"2\": 1}}}}";
     }
   }
 

@@ -74,7 +74,9 @@ class Readme(unittest.TestCase):
 
     def listed(self, name):
         """Keys that the code accepts, from its own list."""
-        body = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
+        function = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % name, self.configuration, re.DOTALL)
+        constant = re.search(r'%s\{(.*?)\};' % name, self.configuration, re.DOTALL)
+        body = (function or constant).group(1)
         return re.findall(r'"(\w+)"', body)
 
     def testBusParametersAreThoseOfTheCode(self):
@@ -172,7 +174,7 @@ class Readme(unittest.TestCase):
     def testTheFirstScanListUsesKnownKeys(self):
         block = re.search(r'## A first scan list\n\n```yaml\n(.*?)```', self.readme, re.DOTALL).group(1)
         parameters = yaml.safe_load(block)
-        self.assertLessEqual(set(parameters), set(self.listed('BUS_KEYS')))
+        self.assertLessEqual(set(parameters), set(self.listed('busKeys')))
         for entry in parameters['scan_list'] + [parameters['defaults']]:
             self.assertLessEqual(set(entry), set(['name', 'node'] + self.listed('sharedKeys')))
 

@@ -95,6 +95,15 @@ TEST_F(StatusConversionTest, everyFieldHasItsBit)
   EXPECT_DOUBLE_EQ(41.0, message.temperature);
 }
 
+TEST_F(StatusConversionTest, aStateThatTheProfileDoesNotKnowIsNamedAndNoTripIsClaimed)
+{
+  status_.monitor.unknown_trip = 7;
+  const InverterStatus message = convert();
+  EXPECT_FALSE(message.faulted);
+  EXPECT_EQ(message.known & InverterStatus::KNOWN_FAULTED, 0U);
+  EXPECT_EQ(message.fault_text.find("unknown state 7"), 0U) << message.fault_text;
+}
+
 TEST_F(StatusConversionTest, aFlagThatIsFalseIsKnown)
 {
   status_.monitor.faulted = false;

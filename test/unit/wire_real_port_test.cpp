@@ -319,7 +319,7 @@ TEST_F(RealPort, losesWhatAnotherProgramLeft)
   settings_.parity = Parity::Even;
   ASSERT_EQ(OpenResult::Opened, open()) << error_;
   EXPECT_EQ(tcflag_t{ CREAD | CLOCAL | CS8 | PARENB | B19200 }, driver.attributes.c_cflag);
-  EXPECT_EQ(tcflag_t{ IGNPAR }, driver.attributes.c_iflag);
+  EXPECT_EQ(tcflag_t{ IGNPAR | INPCK }, driver.attributes.c_iflag);
   EXPECT_EQ(0U, driver.attributes.c_oflag);
   EXPECT_EQ(0U, driver.attributes.c_lflag);
   EXPECT_EQ(1, driver.attributes.c_cc[VMIN]);
@@ -328,6 +328,13 @@ TEST_F(RealPort, losesWhatAnotherProgramLeft)
   EXPECT_EQ(19200U, driver.attributes.c_ospeed);
   EXPECT_FALSE(driver.breaking);
   EXPECT_EQ(N_TTY, driver.discipline);
+}
+
+TEST_F(RealPort, checksNoParityWhereThereIsNone)
+{
+  driver.attributes.c_iflag = INPCK;
+  ASSERT_EQ(OpenResult::Opened, open()) << error_;
+  EXPECT_EQ(tcflag_t{ IGNPAR }, driver.attributes.c_iflag);
 }
 
 struct Quirk

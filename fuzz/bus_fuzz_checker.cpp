@@ -202,6 +202,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   sent_at_ = now;
   request_end_ = now + seconds(scene_.character * static_cast<double>(frame.size()));
   in_flight_ = true;
+  answered_before_ = answered_;
   answered_ = false;
   anything_heard_ = false;
   if (!facts_.inverter && !facts_.broadcast)
@@ -210,6 +211,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   }
   watchDeadMen(now);
   checkStopFirst(now);
+  checkTurn(now);
   checkMotion(now);
   checkBackground(now);
   was_probe_ = facts_.inverter && lanes_[*facts_.inverter].heard_of && !lanes_[*facts_.inverter].online;
@@ -389,7 +391,7 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
   {
     // A stop is exempt from rule 3.9: the late reply to its first frame may stand for the second one.
     const bool of_stop = lane.served != 0 && readRequest(scene_, lane.heard).stop;
-    if (of_stop && readReply(scene_, lane.heard, frame.bytes, refusal) == ReplyKind::NORMAL)
+    if (of_stop && readNoisyReply(lane.heard, frame.bytes, refusal) == ReplyKind::NORMAL)
     {
       lane.stop_replied = now;
       lane.needs_stop_reply = lane.needs_stop_reply && lane.stop_sent < lane.locked_at;
@@ -397,18 +399,25 @@ void Checker::takeReply(TimePoint now, const simulation::FrameRecord& frame, std
     }
     return;
   }
-  ReplyKind kind = readReply(scene_, request_, frame.bytes, refusal);
-  // Noise may stand before it.
-  for (std::size_t skipped = 1; kind == ReplyKind::OTHER && skipped <= LONGEST_NOISE && skipped < frame.bytes.size();
-       ++skipped)
-  {
-    const simulation::Bytes rest(frame.bytes.begin() + static_cast<std::ptrdiff_t>(skipped), frame.bytes.end());
-    kind = readReply(scene_, request_, rest, refusal);
-  }
+  const ReplyKind kind = readNoisyReply(request_, frame.bytes, refusal);
   if (kind != ReplyKind::OTHER)
   {
     notePromptReply(now, index, kind, refusal);
   }
+}
+
+/// Noise may stand before it.
+ReplyKind Checker::readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply,
+                                  unsigned& refusal) const
+{
+  ReplyKind kind = readReply(scene_, request, reply, refusal);
+  for (std::size_t skipped = 1; kind == ReplyKind::OTHER && skipped <= LONGEST_NOISE && skipped < reply.size();
+       ++skipped)
+  {
+    const simulation::Bytes rest(reply.begin() + static_cast<std::ptrdiff_t>(skipped), reply.end());
+    kind = readReply(scene_, request, rest, refusal);
+  }
+  return kind;
 }
 
 void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal)
@@ -422,6 +431,7 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   }
   world_.drives()[index]->advance(now);
   const bool good = kind == ReplyKind::NORMAL;
+  lane.exception_at = good ? lane.exception_at : now;
   if (facts_.reads_frequency && good)
   {
     widen(index);
@@ -562,6 +572,7 @@ void Checker::glance(TimePoint now)
     world_.drives()[index]->advance(now);
     widen(index);
     sample(now, index);
+    lanes_[index].statuses_tripped = unlistedTrip(index) ? lanes_[index].statuses_tripped : 0;
   }
 }
 
@@ -583,10 +594,15 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
 {
   ++statistics_.statuses;
   Lane& lane = lanes_[status.index];
-  const bool faulted = status.monitor.faulted.value_or(false);
-  const bool was_faulted = lane.heard_of && lane.status.monitor.faulted.value_or(false);
+  const bool faulted = status.monitor.faulted.value_or(false) || status.monitor.unknown_trip;
+  const bool was_faulted =
+      lane.heard_of && (lane.status.monitor.faulted.value_or(false) || lane.status.monitor.unknown_trip);
   if (status.communication_error)
   {
+    if (lane.online)
+    {
+      checkWentOffline(now, status.index);
+    }
     if (lane.online || !lane.heard_of)
     {
       probe_allowance_ += 3.0 * toSeconds(scene_.longestExchange());
@@ -607,6 +623,7 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
     world_.drives()[status.index]->advance(now);
     sample(now, status.index);
     checkValues(now, status.index, status);
+    checkTrip(now, status.index, status);
     if (!lane.online)
     {
       lane.online = true;
@@ -639,6 +656,63 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
   tryOpen(now, lane);
   lane.heard_of = true;
   lane.status = status;
+}
+
+/// The drive says that it has tripped in a word that its profile does not know.
+bool Checker::unlistedTrip(std::size_t index) const
+{
+  const InverterFacts& facts = scene_.inverters[index];
+  if (facts.drive == "omron_rx")
+  {
+    return flag(index, "tripped") && value(index, "status_b") != "2";
+  }
+  return !facts.listed_trips.empty() && flag(index, "tripped") &&
+         facts.listed_trips.count(std::stoi(value(index, "trip"))) == 0;
+}
+
+/// Rule 4.8, and 8.6 of the contract. The second status since then was asked for in whole after the trip.
+void Checker::checkTrip(TimePoint now, std::size_t index, const bus::InverterStatus& status)
+{
+  Lane& lane = lanes_[index];
+  if (!unlistedTrip(index))
+  {
+    lane.statuses_tripped = 0;
+    return;
+  }
+  const bool whole = !lane.heard_of || lane.status.stamp != status.stamp;
+  lane.statuses_tripped += whole && !status.communication_error ? 1 : 0;
+  if (lane.statuses_tripped < 2)
+  {
+    return;
+  }
+  if (!status.locked)
+  {
+    fail(now, "a trip that no table lists is a trip", nameOf(index) + " is not locked");
+  }
+  if (runLatched(index) && !status.stop_active)
+  {
+    fail(now, "a trip that no table lists is a trip", nameOf(index) + " still has RUN on");
+  }
+  if (status.monitor.faulted)
+  {
+    fail(now, "a trip that no table lists is a trip", nameOf(index) + ": nobody knows whether it is tripped");
+  }
+}
+
+/// The dead man must not say that nobody commands while somebody is refused.
+void Checker::logged(TimePoint now, const std::string& line) const
+{
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const Lane& lane = lanes_[index];
+    const bool silence = line.compare(0, scene_.inverters[index].name.size() + 26,
+                                      scene_.inverters[index].name + ": stopping: no command for") == 0;
+    const Duration timeout = seconds(scene_.inverters[index].command_timeout);
+    if (silence && lane.refused_at && *lane.refused_at < lane.accepted_at + timeout)
+    {
+      fail(now, "refusals are told", nameOf(index) + ": the log says that no command came, but they were refused");
+    }
+  }
 }
 
 void Checker::checkValues(TimePoint now, std::size_t index, const bus::InverterStatus& status)

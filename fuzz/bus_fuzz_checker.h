@@ -80,6 +80,8 @@ public:
   std::function<void(const bus::Answer&)> asked(TimePoint now, const std::string& what, double bound,
                                                 std::function<void(const bus::Answer&)> judge);
   void published(TimePoint now, const bus::InverterStatus& status);
+  /// A line of the log.
+  void logged(TimePoint now, const std::string& line) const;
   void shutdownBegun(TimePoint now);
   /// \p unconfirmed what the node names, each beginning with the inverter.
   void shutdownEnded(TimePoint now, TimePoint begun, const std::vector<std::string>& unconfirmed) const;
@@ -112,7 +114,7 @@ public:
 private:
   struct Stream
   {
-    TimePoint last;
+    TimePoint last;  ///< that broke a silence
     Duration spacing{ 0 };
     bool neutral = false;
     TimePoint zeroed_at;
@@ -149,6 +151,7 @@ private:
     double hertz = 0.0;  ///< signed, as the drive is to turn
     std::optional<TimePoint> fed;
     std::string commander;
+    std::optional<TimePoint> refused_at;  ///< the first one that was refused since the last accepted command
     int run_copies = 0;
     int set_copies = 0;
     bool run_sent = false;
@@ -176,6 +179,7 @@ private:
     TimePoint confirmed_at;  ///< RUN was read as it is after a stop was acknowledged
 
     // status
+    unsigned statuses_tripped = 0;  ///< complete ones, with other stamps, since the drive has tripped
     bool heard_of = false;
     bool online = false;
     TimePoint online_since;
@@ -195,8 +199,9 @@ private:
     bool first_time = true;
     std::uint64_t served = 0;  ///< number of the request that the drive has heard last
     simulation::Bytes heard;
-    TimePoint lost_at;      ///< the last exchange without an answer
-    unsigned silences = 0;  ///< exchanges in a row that it has not answered
+    TimePoint lost_at;       ///< the last exchange without an answer
+    TimePoint exception_at;  ///< the last one that was answered by a refusal
+    unsigned silences = 0;   ///< exchanges in a row that it has not answered
   };
   struct Call
   {
@@ -213,8 +218,12 @@ private:
   void checkPatience(TimePoint now);
   void endExchange(TimePoint now);
   void takeReply(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
+  ReplyKind readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply, unsigned& refusal) const;
   void notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal);
   void noteHeard(TimePoint end, std::size_t index);
+  void checkTurn(TimePoint now);
+  bool waits(TimePoint now, std::size_t index) const;
+  void checkWentOffline(TimePoint now, std::size_t index) const;
   void payProbe(TimePoint now, Duration cost);
   void checkBackground(TimePoint now);
   std::set<unsigned> settingsOf(std::size_t index) const;
@@ -237,10 +246,17 @@ private:
   void book(TimePoint now, Lane& lane, const bus::Publisher& publisher, bool zero);
   void accept(TimePoint now, std::size_t index, double velocity, const bus::Publisher& publisher);
   void takeZero(TimePoint now, std::size_t index, const bus::Publisher& publisher);
+  void takeNearZero(TimePoint now, std::size_t index, const bus::Publisher& publisher);
+  void takeRunOff(TimePoint now, Lane& lane, std::size_t index);
+  bool isNearZero(std::size_t index, double velocity) const;
+  bool isBeyond(std::size_t index, double velocity) const;
+  double factorOf(const bus::VelocityCommand& command) const;
   void checkResult(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result) const;
 
   // status
   void checkValues(TimePoint now, std::size_t index, const bus::InverterStatus& status);
+  bool unlistedTrip(std::size_t index) const;
+  void checkTrip(TimePoint now, std::size_t index, const bus::InverterStatus& status);
   void sample(TimePoint now, std::size_t index);
   void widen(std::size_t index);
 
@@ -259,6 +275,10 @@ private:
   // the exchange in flight, or the last one
   bool in_flight_ = false;
   std::uint64_t exchange_ = 0;
+  /// Whose the last exchange was, if it was none of a stop, and when it began.
+  std::optional<std::size_t> turn_of_;
+  TimePoint turn_began_;
+  bool answered_before_ = false;
   TimePoint sent_at_;
   TimePoint request_end_;
   simulation::Bytes request_;

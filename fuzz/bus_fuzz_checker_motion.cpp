@@ -24,6 +24,7 @@ constexpr double TURNAROUND_S = 0.03;  // after a broadcast, with a margin
 constexpr unsigned FLOOD_OF_STOPS = 4;
 constexpr double FLOOD_PAUSE_S = 1.0;
 constexpr double ZERO_BOUND_EXCHANGES = 8.0;
+constexpr double LIMIT_ROUNDING = 1e-6;      // contract, 8.5: of a publisher that computes in 32 bits
 constexpr double SHORTEST_SHUTDOWN_S = 2.0;  // contract, rule 4.4
 constexpr double LONGEST_SHUTDOWN_S = 10.0;
 
@@ -397,35 +398,74 @@ void Checker::book(TimePoint now, Lane& lane, const bus::Publisher& publisher, b
 {
   const bool known = lane.streams.count(publisher.name) != 0;
   Stream& stream = lane.streams[publisher.name];
-  stream.spacing = known ? now - stream.last : Duration{ 0 };
+  // Near zero is silence: who has sent nothing else yet has no spacing.
+  stream.spacing = known && stream.last != TimePoint() ? now - stream.last : Duration{ 0 };
   stream.last = now;
   stream.neutral = zero;
   stream.zeroed_at = zero ? now : stream.zeroed_at;
   stream.topics.insert(publisher.topic);
 }
 
+/// Rounds to 0 Hz, or lies below the minimum (contract, 8.5).
+bool Checker::isNearZero(std::size_t index, double velocity) const
+{
+  const InverterFacts& facts = scene_.inverters[index];
+  const double step = facts.brand == Brand::JE ? 0.1 : 0.01;
+  const double hertz = std::fabs(velocity * facts.hz_per_unit);
+  return velocity != 0.0 && (hertz < 0.5 * step || std::fabs(velocity) < facts.min_velocity * (1.0 - LIMIT_ROUNDING));
+}
+
+bool Checker::isBeyond(std::size_t index, double velocity) const
+{
+  const InverterFacts& facts = scene_.inverters[index];
+  if (facts.max_velocity > 0.0)
+  {
+    return std::fabs(velocity) > facts.max_velocity * (1.0 + LIMIT_ROUNDING);
+  }
+  // No profile goes so far, and no story sends anything between.
+  return std::fabs(velocity) > 1000.0 && std::fabs(velocity) > std::fabs(60.0 / facts.hz_per_unit);
+}
+
+/// One for all members: the smallest that any of those that saturate needs.
+double Checker::factorOf(const bus::VelocityCommand& command) const
+{
+  double factor = 1.0;
+  for (const auto& target : command.targets)
+  {
+    const InverterFacts& facts = scene_.inverters[target.first];
+    if (facts.saturates && std::isfinite(target.second) && isBeyond(target.first, target.second))
+    {
+      factor = std::min(factor, facts.max_velocity / std::fabs(target.second));
+    }
+  }
+  return factor;
+}
+
 void Checker::checkResult(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result) const
 {
   bool out_of_range = false;
-  bool all_zero = true;
+  bool all_stop = true;
+  const double factor = factorOf(command);
   for (const auto& target : command.targets)
   {
-    const double most = std::fabs(60.0 / scene_.inverters[target.first].hz_per_unit);
-    const bool beyond = !std::isfinite(target.second) ||
-                        (std::fabs(target.second) > most && std::fabs(target.second) > 1000.0) ||
-                        (target.second != 0.0 && std::fabs(target.second) < 1e-6);
-    out_of_range = out_of_range || beyond;
-    all_zero = all_zero && target.second == 0.0;
+    const bool stops = target.second == 0.0 || isNearZero(target.first, target.second);
+    const bool refused = isBeyond(target.first, target.second) && !scene_.inverters[target.first].saturates;
+    const bool reduced_too_far = !stops && !refused && isNearZero(target.first, target.second * factor);
+    out_of_range = out_of_range || !std::isfinite(target.second) || refused || reduced_too_far;
+    all_stop = all_stop && stops;
   }
   // Contract, section 2: the end of the program is named before a value.
   const std::uint16_t refusal = shutting_down_ ? bus::ERROR_SHUTTING_DOWN : bus::ERROR_OUT_OF_RANGE;
-  if (out_of_range && result != refusal)
+  const bool repeat = std::any_of(command.targets.begin(), command.targets.end(), [&](const auto& target) {
+    return std::isfinite(target.second) && isRepeat(lanes_[target.first], command.publisher);
+  });
+  if (out_of_range && result != refusal && !(repeat && result == 0))
   {
     fail(now, "NaN, infinity and what is out of range are refused", "answer " + std::to_string(result));
   }
-  if (all_zero && result != 0)
+  if (all_stop && result != 0)
   {
-    fail(now, "a command of 0 is never refused", "answer " + std::to_string(result));
+    fail(now, "a command of 0, or near it, is never refused", "answer " + std::to_string(result));
   }
 }
 
@@ -436,35 +476,56 @@ void Checker::commanded(TimePoint now, const bus::VelocityCommand& command, std:
   bool repeat = false;
   for (const auto& target : command.targets)
   {
-    repeat = repeat || (target.second != 0.0 && std::isfinite(target.second) &&
-                        isRepeat(lanes_[target.first], command.publisher));
+    const bool moves = target.second != 0.0 && std::isfinite(target.second) && !isNearZero(target.first, target.second);
+    repeat = repeat || (moves && isRepeat(lanes_[target.first], command.publisher));
   }
+  const double factor = factorOf(command);
   for (const auto& target : command.targets)
   {
+    Lane& lane = lanes_[target.first];
     if (target.second == 0.0)
     {
       takeZero(now, target.first, command.publisher);
     }
+    else if (isNearZero(target.first, target.second))
+    {
+      takeNearZero(now, target.first, command.publisher);
+    }
     else if (result == 0 && !repeat)
     {
-      accept(now, target.first, target.second, command.publisher);
+      accept(now, target.first, target.second * factor, command.publisher);
     }
     else if (!repeat)
     {
-      book(now, lanes_[target.first], command.publisher, false);
+      book(now, lane, command.publisher, false);
+      lane.refused_at = lane.refused_at ? lane.refused_at : now;
     }
   }
+}
+
+void Checker::takeRunOff(TimePoint now, Lane& lane, std::size_t index)
+{
+  if (lane.run_answered && !lane.stopping && online(index) && !lane.zero_due)
+  {
+    lane.zero_due = now;
+  }
+  lane.refused_at.reset();
+  forbid(now, lane);
 }
 
 void Checker::takeZero(TimePoint now, std::size_t index, const bus::Publisher& publisher)
 {
   Lane& lane = lanes_[index];
   book(now, lane, publisher, true);
-  if (lane.run_answered && !lane.stopping && online(index) && !lane.zero_due)
-  {
-    lane.zero_due = now;
-  }
-  forbid(now, lane);
+  takeRunOff(now, lane, index);
+}
+
+/// For the lock it is as if nothing had come, but whoever sent it has been heard.
+void Checker::takeNearZero(TimePoint now, std::size_t index, const bus::Publisher& publisher)
+{
+  Lane& lane = lanes_[index];
+  lane.streams[publisher.name].topics.insert(publisher.topic);
+  takeRunOff(now, lane, index);
 }
 
 /// Rule 4.2 from the messages alone: may this command have been accepted?
@@ -508,6 +569,7 @@ void Checker::accept(TimePoint now, std::size_t index, double velocity, const bu
   lane.hertz = hertz;
   lane.permit = true;
   lane.accepted_at = now;
+  lane.refused_at.reset();
   lane.fed = now;
   lane.commander = publisher.name;
   lane.run_copies = 0;

@@ -28,11 +28,16 @@ constexpr double RUN_EACH_S = 1.2;  // where every drive has a time-out of its o
 constexpr double RUN_S = 4.0;
 constexpr double SHUTDOWN_S = 15.0;  // with what comes before it
 constexpr double STREAM_PERIOD_S = 0.1;
+constexpr double WAVER_HZ = 0.1;
+constexpr unsigned WAVER_STEPS = 30;
 constexpr double SPEED_TOLERANCE_HZ = 0.2;
 }  // namespace
 
 Game::Game(World& world, std::uint64_t seed)
-  : world_(world), dice_(seed * 2654435761U + 12345U), streams_(world.scene().inverters.size())
+  : world_(world)
+  , dice_(seed * 2654435761U + 12345U)
+  , limits_dice_(seed * 40503U + 99991U)
+  , streams_(world.scene().inverters.size())
 {
   pace_ = dice_.any<double>({ 0.05, 0.15, 0.3, 0.6 });
   refuses_ = dice_.hits(0.5);
@@ -194,9 +199,12 @@ void Game::beginStream(std::size_t index)
   stream.on = true;
   stream.hertz = anySpeed(index);
   stream.drift = dice_.hits(0.3) ? 0.05 : 0.0;
+  stream.wavers = false;
+  stream.grouped = false;
   stream.period = dice_.any<double>({ 0.02, 0.05, 0.1, 0.1, 0.25 });
   stream.until = world_.now() + seconds(dice_.between(0.3, 6.0));
   stream.publisher = anyPublisher();
+  stream.dips = limits_dice_.hits(0.2);
   tickStream(index, ++stream.number);
 }
 
@@ -217,8 +225,43 @@ void Game::tickStream(std::size_t index, unsigned number)
     return;
   }
   stream.hertz += stream.hertz > 0.0 ? stream.drift : -stream.drift;
-  sendVelocity(index, stream.hertz, stream.publisher);
+  if (stream.wavers)
+  {
+    const double lowest = world_.scene().inverters[index].lowest_hz;
+    stream.hertz = std::copysign(lowest + WAVER_HZ * (stream.sent++ % WAVER_STEPS), stream.hertz);
+  }
+  if (stream.dips && limits_dice_.hits(0.15))
+  {
+    sendNearZero(index, stream.publisher);
+  }
+  else
+  {
+    sendStream(index, stream);
+  }
   world_.at(seconds(stream.period), [this, index, number] { tickStream(index, number); });
+}
+
+/// Alone, or in one message with those that waver beside it.
+void Game::sendStream(std::size_t index, const Stream& stream)
+{
+  if (!stream.grouped)
+  {
+    sendVelocity(index, stream.hertz, stream.publisher);
+    return;
+  }
+  bus::VelocityCommand command;
+  command.publisher.name = stream.publisher;
+  command.publisher.topic = "command";
+  command.grouped = true;
+  for (std::size_t one = 0; one < streams_.size(); ++one)
+  {
+    const Stream& other = streams_[one];
+    if (one == index || (other.on && other.grouped))
+    {
+      command.targets.emplace_back(one, other.hertz / world_.scene().inverters[one].hz_per_unit);
+    }
+  }
+  world_.command(command);
 }
 
 void Game::sendVelocity(std::size_t index, double hertz, const std::string& publisher)
@@ -228,6 +271,24 @@ void Game::sendVelocity(std::size_t index, double hertz, const std::string& publ
   command.targets = { { index, hertz == 0.0 ? 0.0 : hertz / facts.hz_per_unit } };
   command.publisher.name = publisher;
   command.publisher.topic = facts.name + "/command";
+  world_.command(command);
+}
+
+/// What nobody would call a movement, in the user's unit.
+double Game::nearZero(std::size_t index)
+{
+  const InverterFacts& facts = world_.scene().inverters[index];
+  const double rounds_to_zero = 0.001 / std::fabs(facts.hz_per_unit);
+  const double below = facts.min_velocity > 0.0 && limits_dice_.hits(0.5) ? 0.9 * facts.min_velocity : rounds_to_zero;
+  return limits_dice_.any<double>({ below, -below, 5e-14 });
+}
+
+void Game::sendNearZero(std::size_t index, const std::string& publisher)
+{
+  bus::VelocityCommand command;
+  command.targets = { { index, nearZero(index) } };
+  command.publisher.name = publisher;
+  command.publisher.topic = nameOf(index) + "/command";
   world_.command(command);
 }
 
@@ -241,6 +302,10 @@ void Game::sendLatched(std::size_t index)
   command.publisher.latched = true;
   command.publisher.first_on_connection = dice_.hits(0.7);
   command.publisher.before_start = dice_.hits(0.3);
+  if (limits_dice_.hits(0.2))
+  {
+    command.targets.front().second = nearZero(index);
+  }
   world_.command(command);
 }
 
@@ -256,6 +321,11 @@ void Game::sendGroup()
     {
       const double hertz = dice_.hits(0.2) ? 0.0 : anySpeed(index);
       command.targets.emplace_back(index, hertz / world_.scene().inverters[index].hz_per_unit);
+      double& velocity = command.targets.back().second;
+      const double dice = limits_dice_.chance();
+      // Beyond the maximum, a little and far; near zero.
+      velocity = dice < 0.1 ? 1.5 * velocity : (dice < 0.15 ? 20.0 * velocity : velocity);
+      velocity = dice > 0.9 ? nearZero(index) : velocity;
     }
   }
   if (!command.targets.empty())
@@ -358,13 +428,17 @@ void Game::harm()
   {
     harmDrive(anyone());
   }
-  else if (dice < 0.95)
+  else if (dice < 0.93)
   {
     harmLine();
   }
-  else
+  else if (dice < 0.97)
   {
     killSeveral();
+  }
+  else
+  {
+    failWhileItChanges();
   }
 }
 
@@ -401,7 +475,9 @@ void Game::harmDrive(std::size_t index)
   }
   else if (dice < 0.65)
   {
-    world_.provoke(name + " trip " + std::to_string(1 + dice_.below(7)));
+    const bool rx = world_.scene().inverters[index].drive == "omron_rx";
+    world_.provoke(name + " trip " + std::to_string(1 + dice_.below(7)) +
+                   (rx && limits_dice_.hits(0.4) ? " state 7" : ""));
   }
   else if (dice < 0.75)
   {
@@ -459,6 +535,46 @@ void Game::killSeveral()
       world_.provoke(nameOf(index) + " offline " + std::to_string(duration * dice_.between(0.5, 1.0)));
     }
   }
+}
+
+/// A drive dies, or only its writes, reads or long replies do, while its own velocity changes; its neighbours are
+/// commanded as well.
+void Game::failWhileItChanges()
+{
+  const std::size_t index = anyone();
+  const double period = dice_.any<double>({ 0.01, 0.02, 0.05, 0.05, 0.1, 0.25, 1.0 });
+  const double duration = dice_.between(2.0, 6.0);
+  const bool grouped = dice_.hits(0.3);
+  for (std::size_t one = 0; one < streams_.size(); ++one)
+  {
+    if (one == index || dice_.hits(0.5))
+    {
+      beginStream(one);
+      Stream& stream = streams_[one];
+      stream.wavers = true;
+      stream.grouped = grouped;
+      stream.drift = 0.0;
+      stream.period = period;
+      stream.until = world_.now() + seconds(1.0 + duration);
+    }
+  }
+  const double dice = dice_.chance();
+  const std::string length = " for " + std::to_string(duration);
+  world_.at(seconds(dice_.between(0.2, 1.0)), [this, index, dice, duration, length] {
+    if (!acting_)
+    {
+      return;
+    }
+    if (dice < 0.4)
+    {
+      world_.cutPower(index, duration);
+      return;
+    }
+    const std::string fault = dice < 0.6   ? "lost_request writes"
+                              : dice < 0.8 ? "lost_reply reads"
+                                           : "damaged longer " + std::string(dice < 0.9 ? "9" : "12");
+    world_.provoke(nameOf(index) + " " + fault + length);
+  });
 }
 
 // --- calm --------------------------------------------------------------------------------------------------------------------
@@ -565,9 +681,11 @@ void Game::runAll()
                       nameOf(index) + " refuses every command after everything has come back\n" + world_.state());
     }
   }
+  std::vector<int> locked(streams_.size(), 0);
   const double each = RUN_EACH_S * static_cast<double>(streams_.size());
-  require(seconds(RUN_S + each + 2.0 * world_.scene().interval), "every motor runs", [this] {
-    return allOf([this](std::size_t index) {
+  require(seconds(RUN_S + each + 2.0 * PAUSE_S + 2.0 * world_.scene().interval), "every motor runs", [this, &locked] {
+    return allOf([this, &locked](std::size_t index) {
+      startAgain(index, locked[index]);
       const Truth truth = world_.checker().truth(index);
       const double wanted = streams_[index].hertz;
       return std::fabs(truth.hertz - std::fabs(wanted)) < SPEED_TOLERANCE_HZ &&
@@ -576,6 +694,20 @@ void Game::runAll()
   });
   world_.run(seconds(0.3));
   streaming_ = false;
+}
+
+/// A drive that tells late that it had started anew is stopped and locked once more: its user is silent, and tries again.
+void Game::startAgain(std::size_t index, int& times)
+{
+  if (streams_[index].on && world_.checker().status(index).locked && times < MOST_ATTEMPTS)
+  {
+    ++times;
+    streams_[index].on = false;
+    world_.at(seconds(PAUSE_S), [this, index] {
+      streams_[index].on = true;
+      runOne(index);
+    });
+  }
 }
 
 bool Game::runOne(std::size_t index)
@@ -594,6 +726,9 @@ bool Game::runOne(std::size_t index)
   streaming_ = true;
   stream.on = true;
   stream.drift = 0.0;
+  stream.wavers = false;
+  stream.grouped = false;
+  stream.dips = false;
   stream.period = STREAM_PERIOD_S;
   stream.until = world_.now() + seconds(100.0);
   stream.publisher = "/calm";

@@ -34,7 +34,11 @@ private:
     unsigned number = 0;
     double hertz = 0.0;
     double drift = 0.0;
+    bool wavers = false;  ///< changes with every message and stays in its range
+    bool grouped = false;
+    unsigned sent = 0;
     double period = 0.1;
+    bool dips = false;  ///< goes near zero now and then, as a controller does
     TimePoint until;
     std::string publisher;
   };
@@ -47,6 +51,9 @@ private:
   void beginStream(std::size_t index);
   void tickStream(std::size_t index, unsigned number);
   void sendVelocity(std::size_t index, double hertz, const std::string& publisher);
+  void sendStream(std::size_t index, const Stream& stream);
+  void sendNearZero(std::size_t index, const std::string& publisher);
+  double nearZero(std::size_t index);
   void sendLatched(std::size_t index);
   void sendGroup();
   void sendNonsense(std::size_t index);
@@ -57,6 +64,7 @@ private:
   void harmDrive(std::size_t index);
   void harmLine();
   void killSeveral();
+  void failWhileItChanges();
   std::size_t anyone();
   double anySpeed(std::size_t index);
   std::string anyPublisher();
@@ -67,10 +75,13 @@ private:
   void resetAll();
   void runAll();
   bool runOne(std::size_t index);
+  void startAgain(std::size_t index, int& times);
   void stopAll();
 
   World& world_;
   Dice dice_;
+  /// For what goes beyond limits and near zero: the rest of a story does not depend on it.
+  Dice limits_dice_;
   std::vector<Stream> streams_;
   bool acting_ = false;      ///< chance goes on
   bool streaming_ = false;   ///< streams go on

@@ -25,6 +25,10 @@ constexpr double LONGEST_FRAMES = 90.0;
 constexpr double PROBE_FRAME = 24.0;    // characters
 constexpr double REPLY_SLACK_S = 0.03;  // wire::Line waits so much longer for the rest of a reply that has begun
 constexpr double PROFILE_DELAY_S = 0.01;
+constexpr double SHORTEST_BLINDNESS_S = 2.0;  // contract, 8.15
+constexpr double TURNAROUND_S = 0.012;        // of a simulated drive at most
+constexpr double USUAL_FRAMES = 24.0;         // characters of a read and its reply
+constexpr double READS_PER_REFRESH = 4.0;
 
 const char* const TECO_ENTRY =
     ", drive: teco_7200ma, confirm: [run_forward, fault_reset, frequency_scale, monitor_layout, fault_coding], "
@@ -46,7 +50,8 @@ std::string number(double value)
 class SceneWriter
 {
 public:
-  SceneWriter(std::uint64_t number, const std::string& name) : dice_(number * 7919U + 17U)
+  SceneWriter(std::uint64_t number, const std::string& name)
+    : dice_(number * 7919U + 17U), limits_dice_(number * 104729U + 29U)
   {
     scene_.name = name;
   }
@@ -54,6 +59,7 @@ public:
   Scene write()
   {
     chooseLine();
+    chooseLimits();
     const std::size_t count = chooseCount();
     // What the bus can meet: about ten exchanges for each inverter.
     shortest_timeout_ = std::ceil(static_cast<double>(count) * 800.0 * scene_.character * 5.0) / 5.0;
@@ -102,11 +108,44 @@ private:
     head_ << "baud_rate: " << scene_.baud_rate << "\nretries: " << scene_.retries << "\n";
     scene_.interval = dice_.hits(0.25) ? dice_.any<double>({ 0.05, 0.3, 1.4 }) : 0.0;
     head_ << "interval: " << scene_.interval << "\n";
-    head_ << "idle_divisor: " << (dice_.hits(0.25) ? 2 + dice_.below(4) : 1) << "\n";
+    scene_.idle_divisor = static_cast<unsigned>(dice_.hits(0.25) ? 2 + dice_.below(4) : 1);
+    head_ << "idle_divisor: " << scene_.idle_divisor << "\n";
     scene_.offline_after = static_cast<unsigned>(dice_.hits(0.7) ? 3 : 1 + dice_.below(8));
     head_ << "offline_after: " << scene_.offline_after << "\n";
     response_timeout_ = scene_.compoway ? 0.25 : dice_.any<double>({ 0.05, 0.1, 0.1, 0.2 });
     head_ << "response_timeout: " << response_timeout_ << "\n";
+  }
+
+  /// Dice of their own: what else happens on a bus does not depend on them.
+  void chooseLimits()
+  {
+    limits_ = limits_dice_.hits(0.5);
+    all_saturate_ = limits_ && limits_dice_.hits(0.3);
+    head_ << (all_saturate_ ? "limit: saturate\n" : "");
+  }
+
+  std::string limitsOf(InverterFacts& facts)
+  {
+    std::ostringstream text;
+    text.precision(12);
+    if (!limits_)
+    {
+      return "";
+    }
+    const double unit = std::fabs(facts.hz_per_unit);
+    facts.saturates = all_saturate_ || limits_dice_.hits(0.6);
+    if (facts.saturates || limits_dice_.hits(0.5))
+    {
+      facts.max_velocity = std::round((facts.highest_hz + limits_dice_.between(0.0, 1.5)) / unit * 1e4) / 1e4;
+      text << ", max_velocity: " << facts.max_velocity;
+    }
+    if (limits_dice_.hits(0.4))
+    {
+      facts.min_velocity = std::round(0.6 * facts.lowest_hz / unit * 1e4) / 1e4;
+      text << ", min_velocity: " << facts.min_velocity;
+    }
+    text << (facts.saturates && !all_saturate_ ? ", limit: saturate" : "");
+    return text.str();
   }
 
   std::size_t chooseCount()
@@ -156,6 +195,7 @@ private:
     std::ostringstream parameters;
     std::string more;
     setUp(facts, parameters, more);
+    more += limitsOf(facts);
     list_ << "  - {name: " << facts.name << ", node: " << facts.node << ", hz_per_unit: " << facts.hz_per_unit
           << ", command_timeout: " << facts.command_timeout << ", response_timeout: " << facts.response_timeout
           << (dice_.hits(0.2) ? ", stop_unexpected_motion: true" : "") << more << "}\n";
@@ -242,9 +282,18 @@ private:
       facts.own_delay = 0.02;
       parameters << ", F805: 0.02";
     }
+    if (limits_dice_.hits(0.3))
+    {
+      // FC90 is 0 while it is healthy.
+      facts.listed_trips = { 0, 1, 2 };
+      more += ", overrides: {status: {faulted: {register: 0xFC90, values: {\"0\": 0, \"1\": 1, \"2\": 1}}}}";
+    }
   }
 
   Dice dice_;
+  Dice limits_dice_;
+  bool limits_ = false;
+  bool all_saturate_ = false;
   Scene scene_;
   double response_timeout_ = 0.1;
   double shortest_timeout_ = 0.6;
@@ -272,6 +321,15 @@ double Scene::longestSilence() const
 Duration Scene::longestExchange() const
 {
   return 3 * gap() + seconds(longestSilence() + PROFILE_DELAY_S + REPLY_SLACK_S + LONGEST_FRAMES * character);
+}
+
+double Scene::longestBlindness() const
+{
+  const double exchange = 3.0 * toSeconds(gap()) + TURNAROUND_S + USUAL_FRAMES * character;
+  const double refreshes = READS_PER_REFRESH * exchange * static_cast<double>(inverters.size());
+  // Commands and services alternate with refreshes.
+  return std::max(SHORTEST_BLINDNESS_S, 3.0 * idle_divisor * (interval + 2.0 * refreshes)) +
+         4.0 * toSeconds(longestExchange());
 }
 
 Duration Scene::longestProbe() const

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ struct InverterFacts
   double own_delay = 0.0;         ///< [s] of the drive itself before a reply: C078, F805
   double drive_timeout = 0.0;     ///< [s] C077, F803, Cn-27; 0: none
   bool block = false;             ///< VF-S15 whose block read and write are selected
+  double max_velocity = 0.0;      ///< [user's unit] 0: the profile's
+  double min_velocity = 0.0;      ///< [user's unit]
+  bool saturates = false;         ///< limit: saturate; has a max_velocity then
+  /// Its profile is told of these trip codes only (0 among them): another one is a state that nobody knows.
+  std::set<int> listed_trips;
   /// A parameter that nobody writes and that differs from drive to drive, and one that is written.
   std::string fixed_parameter;
   double fixed_value = 0.0;
@@ -54,6 +60,7 @@ struct Scene
   bool compoway = false;
   bool one_brand = true;  ///< every inverter has the same profile
   double interval = 0.0;  ///< [s]
+  unsigned idle_divisor = 1;
   int retries = 1;
   unsigned offline_after = 3;
   std::vector<InverterFacts> inverters;
@@ -64,6 +71,8 @@ struct Scene
   Duration longestProbe() const;
   /// [s] that a request without an answer is waited for at the most.
   double longestSilence() const;
+  /// [s] after which an inverter without a complete status is offline (contract, 8.15), with what a busy bus adds.
+  double longestBlindness() const;
   /// Silence before a request.
   Duration gap() const;
 };

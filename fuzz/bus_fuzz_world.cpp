@@ -174,6 +174,10 @@ void World::deliver()
   {
     checker_.published(clock_.now(), status);
   }
+  for (const bus::Finding& line : outputs.log)
+  {
+    checker_.logged(clock_.now(), line.text);
+  }
   for (auto& answer : coordinator_.takeAnswers())
   {
     answer.first(answer.second);

@@ -32,6 +32,18 @@ PATIENCE = 45.0  # [s] for a step to be seen: generous, for busy machines
 TRIP_CODE = 7  # overvoltage on an MX2
 
 
+def write(text):
+    """To the terminal. One that is gone, or a pipe that nobody reads any more, ends the scene as Ctrl-C does."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (1, 2):
+            os.dup2(nowhere, stream)
+        os.kill(os.getpid(), signal.SIGHUP)
+
+
 class Ended(Exception):
     """Ctrl-C, or the ROS master went away."""
 
@@ -330,7 +342,7 @@ class PlainLines:
         self.say('ok  %s (%.1f s)%s' % (title, seconds, ': ' + detail if detail else ''))
 
     def say(self, text):
-        print(text, flush=True)
+        write(text + '\n')
 
     def close(self):
         pass
@@ -354,7 +366,7 @@ class LiveTable:
         self.lock = threading.Lock()
         self.unicode = 'utf' in (sys.stdout.encoding or '').lower()
         self.closed = threading.Event()
-        sys.stdout.write(self.ENTER)
+        write(self.ENTER)
         self.thread = threading.Thread(target=self.redraw, daemon=True)
         self.thread.start()
 
@@ -373,8 +385,7 @@ class LiveTable:
         if not self.closed.is_set():
             self.closed.set()
             self.thread.join()
-            sys.stdout.write(self.LEAVE)
-            sys.stdout.flush()
+            write(self.LEAVE)
 
     def sign(self, unicode, plain):
         return unicode if self.unicode else plain
@@ -388,8 +399,7 @@ class LiveTable:
                 lines = self.lines()
             except (AttributeError, TypeError):  # a status message arrived half-way
                 continue
-            sys.stdout.write(self.BEGIN_FRAME + ''.join(line + '\x1b[K\r\n' for line in lines) + self.END_FRAME)
-            sys.stdout.flush()
+            write(self.BEGIN_FRAME + ''.join(line + '\x1b[K\r\n' for line in lines) + self.END_FRAME)
 
     def lines(self):
         columns, rows = shutil.get_terminal_size()
@@ -504,8 +514,8 @@ def main():
     line.ended.set()
     if show.live:
         for event in show.events:
-            print(event)
-    print(words, flush=True)
+            write(event + '\n')
+    write(words + '\n')
     rospy.signal_shutdown('played')
     return status
 

@@ -3,6 +3,7 @@
 import glob
 import os
 import re
+import shlex
 import subprocess
 import unittest
 
@@ -35,6 +36,28 @@ def members(source, struct):
     return {name: (kind, (value or braces).strip()) for kind, name, value, braces in found}
 
 
+def commands(program, *words):
+    """Command lines of README and docs that begin so, as a shell splits them."""
+    found = []
+    for path in [os.path.join(ROOT, 'README.md')] + sorted(glob.glob(os.path.join(ROOT, 'docs', '*.md'))):
+        # A line of a block, or what stands between back-ticks.
+        for line in re.findall(r'^(%s .*)$|`(%s [^`]*)`' % (program, program), read(path), re.MULTILINE):
+            arguments = shlex.split(' '.join(line).strip(), comments=True)
+            if arguments[1:1 + len(words)] == list(words):
+                found.append(arguments)
+    return found
+
+
+def fields(path):
+    """Fields of a message, or of a service's request: name to type."""
+    lines = read(*path).split('\n---')[0].splitlines()
+    return {match.group(2): match.group(1) for match in
+            (re.match(r'(\w+(?:\[\])?) (\w+)\s*(?:#.*)?$', line) for line in lines) if match}
+
+
+ACCEPTED = {'string': str, 'bool': bool, 'uint8': int, 'float64': (int, float)}
+
+
 TYPES = {'std::string': 'string', 'double': 'double', 'int': 'int', 'unsigned': 'int', 'bool': 'bool',
          'std::uint8_t': 'int', 'std::optional<double>': 'double', 'std::vector<int>': 'list of int'}
 
@@ -51,12 +74,14 @@ class Readme(unittest.TestCase):
 
     def listed(self, name):
         """Keys that the code accepts, from its own list."""
-        body = re.search(r'%s(?: keys|\(\)\n\{\n  return)?\s*\{(.*?)\};' % name, self.configuration, re.DOTALL).group(1)
+        function = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % name, self.configuration, re.DOTALL)
+        constant = re.search(r'%s\{(.*?)\};' % name, self.configuration, re.DOTALL)
+        body = (function or constant).group(1)
         return re.findall(r'"(\w+)"', body)
 
     def testBusParametersAreThoseOfTheCode(self):
         documented = [row[0] for row in table(self.readme, '### The bus')]
-        self.assertEqual(documented, self.listed('BUS_KEYS'))
+        self.assertEqual(documented, self.listed('busKeys'))
 
     def testEntryParametersAreThoseOfTheCode(self):
         documented = [row[0] for row in table(self.readme, '### An entry of the scan list')]
@@ -149,9 +174,33 @@ class Readme(unittest.TestCase):
     def testTheFirstScanListUsesKnownKeys(self):
         block = re.search(r'## A first scan list\n\n```yaml\n(.*?)```', self.readme, re.DOTALL).group(1)
         parameters = yaml.safe_load(block)
-        self.assertLessEqual(set(parameters), set(self.listed('BUS_KEYS')))
+        self.assertLessEqual(set(parameters), set(self.listed('busKeys')))
         for entry in parameters['scan_list'] + [parameters['defaults']]:
             self.assertLessEqual(set(entry), set(['name', 'node'] + self.listed('sharedKeys')))
+
+    def testServiceCallsAreAcceptedAsTyped(self):
+        kinds = {row[0].split('/')[-1].lstrip('~'): row[1] for row in table(self.readme, '## Services')}
+        calls = commands('rosservice', 'call')
+        self.assertGreater(len(calls), 4)
+        for call in calls:
+            self.assertEqual(len(call), 4, 'one argument in quotes, also for a service that needs none: %s' % call)
+            package, kind = kinds[call[2].split('/')[-1]].split('/')
+            request = fields(('srv', kind + '.srv')) if package == 'inverter_bus' else {}
+            arguments = yaml.safe_load(call[3])
+            self.assertIsInstance(arguments, dict, call)
+            for name, given in arguments.items():
+                self.assertIn(name, request, call)
+                self.assertIsInstance(given, ACCEPTED[request[name]], call)
+
+    def testPublishedMessagesAreAcceptedAsTyped(self):
+        lines = commands('rostopic', 'pub')
+        self.assertTrue(any('-- -' in ' '.join(line) for line in lines), 'a negative velocity')
+        for line in lines:
+            words = line[2:]
+            behind = words.index('--') if '--' in words else len(words)
+            for option in (word for word in words[:behind] if word.startswith('-')):
+                self.assertIn(option, ('-r', '-1'), 'rostopic takes it for an option: %s' % line)
+            self.assertIsInstance(yaml.safe_load(words[-1]), float, line)
 
     def testProfilesAreThoseOfTheRepository(self):
         section = self.readme.split('\n## ')[0]
@@ -163,7 +212,8 @@ class Readme(unittest.TestCase):
 
 class Documents(unittest.TestCase):
     def testLinksLeadSomewhere(self):
-        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')):
+        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')) + [
+                os.path.join(ROOT, 'findings', 'README.md')]:
             text = read(path)
             anchors = {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
                        for heading in re.findall(r'^#+ (.*)$', text, re.MULTILINE)}
@@ -217,6 +267,17 @@ class Documents(unittest.TestCase):
         for row in rows:
             first = re.split('[;,:]', row[1])[0]
             self.assertIn('"%s' % first, checker, 'rule %s: bus_fuzz prints no "%s"' % (row[0], first))
+
+    def testTheFindingsAreThoseOfTheFolder(self):
+        rows = table('\n' + read('findings', 'README.md'), '# Findings')
+        named = [re.match(r'\[(\w+)\]\((\w+)\.sh\)$', row[0]).groups() for row in rows]
+        scripts = [os.path.basename(path)[:-3] for path in glob.glob(os.path.join(ROOT, 'findings', '*.sh'))]
+        self.assertEqual(sorted(named), sorted((name, name) for name in scripts))
+        for name in scripts:
+            self.assertTrue(os.access(os.path.join(ROOT, 'findings', name + '.sh'), os.X_OK), name)
+            text = read('findings', name + '.sh')
+            self.assertIn('echo "as seen"', text, name)
+            self.assertNotRegex(text, r'inverter_bus', name + ' shows others, not this project')
 
     def testTheChangelogIsCatkins(self):
         lines = read('CHANGELOG.rst').splitlines()

@@ -70,9 +70,23 @@ class InstalledTree(unittest.TestCase):
         answer = self.run_in_tree('rosrun inverter_bus check_profile /no/such/file.yaml')
         self.assertNotEqual(answer.returncode, 0)
 
+    def scan_lists(self, launch):
+        """Arguments that a launch file does not start without: which line it is for."""
+        files = {'bus.launch': {'config': 'conveyor_line'},
+                 'multi_bus.launch': {'line_config': 'conveyor_line', 'robot_config': 'diff_drive_robot'}}
+        return ['%s:=%s/config/%s.yaml' % (argument, self.share, name)
+                for argument, name in files.get(launch, {}).items()]
+
+    def testAMisspeltArgumentStartsNoOtherLine(self):
+        for launch in ('bus.launch', 'multi_bus.launch'):
+            answer = self.run_in_tree('roslaunch --nodes inverter_bus %s confg:=%s/config/conveyor_line.yaml' %
+                                      (launch, self.share))
+            self.assertNotEqual(answer.returncode, 0, answer.stdout)
+            self.assertIn('config', answer.stdout)
+
     def testItsLaunchFilesAreComplete(self):
         for name in sorted(os.listdir(os.path.join(self.share, 'launch'))):
-            answer = self.run_in_tree('roslaunch --nodes inverter_bus ' + name)
+            answer = self.run_in_tree('roslaunch --nodes inverter_bus %s %s' % (name, ' '.join(self.scan_lists(name))))
             self.assertEqual(answer.returncode, 0, answer.stdout)
 
     def node(self, drive):

@@ -235,6 +235,7 @@ def other_programs(build):
     yield python_program('programs', 'test/command_line_test.py', build)
     for path in sorted(glob.glob(os.path.join(ROOT, 'test', 'peers', '*_test.py'))):
         yield python_program('peer', os.path.relpath(path, ROOT), build, 180.0)
+    yield python_program('demo', 'test/demo_terminal_test.py', build, 600.0)
     yield Program('demo', 'demo_once', ['bash', os.path.join(ROOT, 'scripts', 'demo'), '--once', '--build', build],
                   time_limit=420.0)
 

@@ -17,6 +17,8 @@ constexpr double RESUME_PERIOD_S = 0.05;
 // Every try moves the RTS line of whoever has the port.
 constexpr double IN_USE_PERIOD_S = 1.0;
 constexpr double IN_USE_PATIENCE_S = 30.0;
+// Somebody may set the adapter while the bus runs.
+constexpr double ADAPTER_PERIOD_S = 5.0;
 }  // namespace
 
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
@@ -68,6 +70,7 @@ TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error
     case wire::OpenResult::Opened:
       ever_opened_ = true;
       coordinator_.portOpened(now);
+      next_look_ = now;
       return now;
     case wire::OpenResult::Pending:
       coordinator_.portPending(now);
@@ -91,6 +94,19 @@ void BusLoop::judgePatience(TimePoint now, bool in_use)
   }
   in_use_since_ = in_use_since_ ? in_use_since_ : std::optional<TimePoint>(now);
   given_up_ = given_up_ || now - *in_use_since_ >= seconds(IN_USE_PATIENCE_S);
+}
+
+void BusLoop::lookAtAdapter()
+{
+  const TimePoint now = clock_.now();
+  if (now < next_look_)
+  {
+    return;
+  }
+  next_look_ = now + seconds(ADAPTER_PERIOD_S);
+  const std::optional<wire::AdapterLatency> latency = line_.adapterLatency();
+  const std::lock_guard<std::mutex> guard(mutex_);
+  coordinator_.noteAdapter(latency);
 }
 
 /// Reasons of ours to give up an open port and open it anew; true if there was one.
@@ -129,6 +145,7 @@ TimePoint BusLoop::step()
   {
     return openPort();
   }
+  lookAtAdapter();
   // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
   const bool there = line_.settle();
   if (there && reopen())

@@ -3,14 +3,18 @@
 #include "inverter_bus/bus/configuration.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "configuration_inverter.h"
+#include "configuration_keys.h"
 #include "configuration_scan_list.h"
 #include "configuration_section.h"
+#include "inverter_bus/config/shown.h"
 
 namespace inverter_bus
 {
@@ -18,30 +22,6 @@ namespace bus
 {
 namespace
 {
-/// `simulation` belongs to the simulated bus, which reads the same file.
-const std::vector<std::string> BUS_KEYS{ "port",
-                                         "protocol",
-                                         "baud_rate",
-                                         "parity",
-                                         "data_bits",
-                                         "stop_bits",
-                                         "rs485",
-                                         "interval",
-                                         "response_timeout",
-                                         "gateway_timeout",
-                                         "pause_in_reply",
-                                         "limit",
-                                         "retries",
-                                         "offline_after",
-                                         "exclusive",
-                                         "realtime_priority",
-                                         "idle_divisor",
-                                         "parameter_access",
-                                         "trace_directory",
-                                         "defaults",
-                                         "scan_list",
-                                         "simulation" };
-
 /// "/dev/ttyUSB0", "tcp://host[:port]", "rtu+tcp://host:port".
 void readPort(const Section& section, BusConfig& bus)
 {
@@ -247,12 +227,35 @@ Configuration inNodeOrder(BusConfig bus, std::vector<ConfiguredInverter> inverte
   }
   return configuration;
 }
+/// Below the node's name may lie what was meant for others: a helper node's parameters, a name that a launch file gives to all
+/// nodes. What resembles a key of ours stays, to be refused.
+Section withoutForeignKeys(const Value& parameters, const std::string& place, const std::shared_ptr<Remarks>& remarks)
+{
+  Value ours = parameters;
+  for (auto entry = ours.map.begin(); entry != ours.map.end();)
+  {
+    const std::string& key = entry->first;
+    const auto& known = busKeys();
+    const bool unknown = std::find(known.begin(), known.end(), key) == known.end();
+    const bool foreign = unknown && !isLibraryKey(key) && remarkOn(key).empty();
+    if (foreign)
+    {
+      remarks->push_back(drive::oneLine(place + ": parameter '" + config::shown(key) +
+                                        "' = " + describe(entry->second) +
+                                        " is none of this node's and is ignored (another node's, or one that a launch "
+                                        "file sets for all of them)"));
+    }
+    entry = foreign || isLibraryKey(key) ? ours.map.erase(entry) : std::next(entry);
+  }
+  return Section(ours, place, remarks);
+}
 }  // namespace
 
 Configuration readConfiguration(const Value& parameters, const std::string& place, const std::string& profile_directory)
 {
-  const Section section(parameters, place);
-  section.refuseUnknownKeys(BUS_KEYS);
+  const auto remarks = std::make_shared<Remarks>();
+  const Section section = withoutForeignKeys(parameters, place, remarks);
+  section.refuseUnknownKeys(busKeys());
   BusConfig bus = readBus(section);
   std::vector<ConfiguredInverter> inverters;
   // "~scan_list[0]" is how ROS writes a private parameter; a file name wants a separator.
@@ -265,7 +268,9 @@ Configuration readConfiguration(const Value& parameters, const std::string& plac
     inverters.push_back(std::move(inverter));
   }
   checkAlone(entries, inverters);
-  return inNodeOrder(std::move(bus), std::move(inverters));
+  Configuration configuration = inNodeOrder(std::move(bus), std::move(inverters));
+  configuration.warnings = *remarks;
+  return configuration;
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -120,6 +120,7 @@ drive::ProfileChanges readChanges(const Section& entry)
   changes.skip = readSkip(entry);
   changes.place = entry.placeOf("drive");
   changes.confirm = readConfirm(entry);
+  changes.confirm_place = entry.placeOf("confirm");
   const Value* overrides = entry.find("overrides");
   if (overrides == nullptr || overrides->type == Value::Type::None)
   {
@@ -137,7 +138,13 @@ drive::ProfileChanges readChanges(const Section& entry)
   return changes;
 }
 
-/// The profile reader names file and line; this adds the entry that asked for the profile.
+bool begins(const std::string& text, const std::string& start)
+{
+  return text.compare(0, start.size(), start) == 0;
+}
+
+/// The profile reader names file and line; this adds the entry that asked for the profile. What is wrong with the entry's own
+/// overrides and confirm it names itself.
 drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config, const std::string& profile_directory)
 {
   try
@@ -146,6 +153,12 @@ drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config,
   }
   catch (const drive::ConfigurationError& error)
   {
+    const std::string what = error.what();
+    const bool in_overrides = !config.changes.overrides_yaml.empty() && begins(what, config.changes.place + ": ");
+    if (in_overrides || begins(what, config.changes.confirm_place + ": key 'confirm'"))
+    {
+      throw;
+    }
     const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + wire::shown(config.drive) + "': ";
     throw drive::ConfigurationError(drive::oneLine(place + error.what()));
   }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <regex>
 
+#include "configuration_keys.h"
 #include "inverter_bus/wire/shown.h"
 
 namespace inverter_bus
@@ -18,22 +19,6 @@ const char* const SCAN_LIST = "scan_list";
 const char* const MASK_FORMS =
     "a list of inverters, or a bit mask of stations 1 to 31: an integer, '0x80000002' or "
     "'#80000002' (in quotes)";
-
-/// Keys of an entry that `defaults` may hold too.
-std::vector<std::string> sharedKeys()
-{
-  return { "drive",           "hz_per_unit",      "max_velocity",           "min_velocity",
-           "command_timeout", "response_timeout", "rated_current",          "rated_voltage",
-           "configure_block", "block_read",       "stop_unexpected_motion", "release_on_exit",
-           "overrides",       "confirm",          "limit",                  "skip" };
-}
-
-std::vector<std::string> entryKeys()
-{
-  std::vector<std::string> keys = sharedKeys();
-  keys.insert(keys.begin(), { "name", "node" });
-  return keys;
-}
 
 /// ROS parameters are int32: bit 31 makes a mask negative.
 std::uint32_t maskFromInteger(const Section& bus, std::int64_t number)
@@ -85,7 +70,8 @@ std::vector<Section> entriesFromMask(const Section& bus, std::uint32_t mask, con
     entry.type = Value::Type::Map;
     entry.map["name"] = textValue("inverter_" + std::to_string(node));
     entry.map["node"] = integerValue(node);
-    entries.emplace_back(entry, bus.placeOf(SCAN_LIST) + " station " + std::to_string(node) + " of scan_list");
+    entries.emplace_back(entry, bus.placeOf(SCAN_LIST) + " station " + std::to_string(node) + " of scan_list",
+                         bus.remarks());
     entries.back().inherit(defaults);
   }
   if (entries.empty())
@@ -117,7 +103,7 @@ std::vector<Section> entriesFromList(const Section& bus, const std::vector<Value
   std::vector<Section> entries;
   for (std::size_t i = 0; i < list.size(); ++i)
   {
-    entries.emplace_back(list[i], entryPlace(place, i, list[i]));
+    entries.emplace_back(list[i], entryPlace(place, i, list[i]), bus.remarks());
     entries.back().refuseUnknownKeys(entryKeys());
     entries.back().inherit(defaults);
   }
@@ -130,7 +116,7 @@ Section readDefaults(const Section& bus, const std::string& place)
   none.type = Value::Type::Map;
   const Value* value = bus.find("defaults");
   const bool given = value != nullptr && value->type != Value::Type::None;
-  Section defaults(given ? *value : none, place + "defaults");
+  Section defaults(given ? *value : none, place + "defaults", bus.remarks());
   defaults.refuseUnknownKeys(sharedKeys());
   return defaults;
 }

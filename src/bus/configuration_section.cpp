@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "configuration_keys.h"
+#include "inverter_bus/config/scalar.h"
 #include "inverter_bus/wire/shown.h"
 #include "inverter_bus/wire/shown_number.h"
 
@@ -92,7 +95,8 @@ std::string join(const std::vector<std::string>& names)
   return text;
 }
 
-Section::Section(const Value& value, const std::string& place) : place_(wire::shown(place, LONGEST_MESSAGE))
+Section::Section(const Value& value, const std::string& place, std::shared_ptr<Remarks> remarks)
+  : place_(wire::shown(place, LONGEST_MESSAGE)), remarks_(std::move(remarks))
 {
   if (value.type != Value::Type::Map)
   {
@@ -103,6 +107,16 @@ Section::Section(const Value& value, const std::string& place) : place_(wire::sh
   {
     entries_[entry.first] = Entry{ entry.second, place_ };
   }
+}
+
+const std::shared_ptr<Remarks>& Section::remarks() const
+{
+  return remarks_;
+}
+
+const std::string& Section::place() const
+{
+  return place_;
 }
 
 void Section::inherit(const Section& defaults)
@@ -116,8 +130,10 @@ void Section::refuseUnknownKeys(const std::vector<std::string>& known) const
   {
     if (std::find(known.begin(), known.end(), entry.first) == known.end())
     {
+      const std::string remark = remarkOn(entry.first);
       throw drive::ConfigurationError(entry.second.place + ": unknown key '" + wire::shown(entry.first) +
-                                      "' = " + describe(entry.second.value) + "; allowed: " + join(known));
+                                      "' = " + describe(entry.second.value) + (remark.empty() ? "" : ": " + remark) +
+                                      "; allowed: " + join(known));
     }
   }
 }
@@ -148,7 +164,7 @@ bool Section::boolean(const std::string& key, bool fallback) const
   }
   if (value->type != Value::Type::Boolean)
   {
-    fail(key, "is no truth value", "true, false");
+    fail(key, "is no truth value", withHint("true, false", *value));
   }
   return value->boolean;
 }
@@ -164,7 +180,7 @@ std::int64_t Section::integer(const std::string& key, std::int64_t fallback, std
   const std::string allowed = "a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum);
   if (value->type != Value::Type::Integer)
   {
-    fail(key, "is no whole number", allowed);
+    fail(key, "is no whole number", withHint(allowed, *value));
   }
   if (value->integer < minimum || value->integer > maximum)
   {
@@ -185,18 +201,57 @@ std::optional<double> Section::number(const std::string& key, const Range& range
   {
     return std::nullopt;
   }
-  if (value->type != Value::Type::Integer && value->type != Value::Type::Number)
+  const std::optional<double> number = numberOf(key, *value);
+  if (!number)
   {
-    fail(key, "is no number", rangeText(range));
+    fail(key, "is no number", withHint(rangeText(range), *value));
   }
-  const double number = value->type == Value::Type::Integer ? static_cast<double>(value->integer) : value->number;
   // Written so that NaN fails too.
-  const bool large_enough = range.above_minimum ? number > range.minimum : number >= range.minimum;
-  if (!std::isfinite(number) || !large_enough || !(number <= range.maximum))
+  const bool large_enough = range.above_minimum ? *number > range.minimum : *number >= range.minimum;
+  if (!std::isfinite(*number) || !large_enough || !(*number <= range.maximum))
   {
-    fail(key, std::isfinite(number) ? "is out of range" : "is not finite", rangeText(range));
+    fail(key, std::isfinite(*number) ? "is out of range" : "is not finite", rangeText(range));
   }
   return number;
+}
+
+std::optional<double> Section::numberOf(const std::string& key, const Value& value) const
+{
+  switch (value.type)
+  {
+    case Value::Type::Integer:
+      return static_cast<double>(value.integer);
+    case Value::Type::Number:
+      return value.number;
+    case Value::Type::Text:
+      break;
+    default:
+      return std::nullopt;
+  }
+  // 1e2 is a text to YAML 1.1, and 100 to whoever wrote it.
+  const std::optional<double> meant = config::meantNumber(value.text);
+  const std::string remark = placeOf(key) + ": key '" + key + "' = " + describe(value) +
+                             ": is a text to YAML and taken as the number that it looks like; " +
+                             config::hintFor(value.text);
+  if (meant && std::find(remarks_->begin(), remarks_->end(), remark) == remarks_->end())
+  {
+    remarks_->push_back(remark);
+  }
+  return meant;
+}
+
+std::string Section::withHint(const std::string& allowed, const Value& value)
+{
+  std::string hint;
+  if (value.type == Value::Type::Text)
+  {
+    hint = config::hintFor(value.text);
+  }
+  else if (value.type == Value::Type::Number && std::floor(value.number) == value.number)
+  {
+    hint = "write it without a decimal point";
+  }
+  return hint.empty() ? allowed : allowed + "; " + hint;
 }
 
 std::string Section::text(const std::string& key, const std::string& fallback) const
@@ -243,7 +298,7 @@ std::int64_t Section::choice(const std::string& key, std::int64_t fallback,
     {
       names.push_back(std::to_string(number));
     }
-    fail(key, "is none of the choices", join(names));
+    fail(key, "is none of the choices", withHint(join(names), *value));
   }
   return value->integer;
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,13 +37,20 @@ class Section;
 /// Key `limit` of the bus or of an entry.
 Limit readLimit(const Section& section, Limit fallback);
 
+/// What is taken although it should be mended, one line each.
+using Remarks = std::vector<std::string>;
+
 /// A map of the configuration that is being judged. Every getter throws drive::ConfigurationError with one line that
 /// names place, key, value and what is allowed.
 class Section
 {
 public:
   /// \throws drive::ConfigurationError if \p value is no map
-  Section(const Value& value, const std::string& place);
+  Section(const Value& value, const std::string& place, std::shared_ptr<Remarks> remarks);
+
+  const std::shared_ptr<Remarks>& remarks() const;
+  /// Where this map itself stands.
+  const std::string& place() const;
 
   /// Takes the keys of \p defaults that are not here; messages about them name its place.
   void inherit(const Section& defaults);
@@ -78,8 +86,14 @@ private:
     Value value;
     std::string place;
   };
+  /// The number of a value; empty: it is none.
+  std::optional<double> numberOf(const std::string& key, const Value& value) const;
+  /// \p allowed, and a hint where \p value looks like what is wanted.
+  static std::string withHint(const std::string& allowed, const Value& value);
+
   std::map<std::string, Entry> entries_;
   std::string place_;
+  std::shared_ptr<Remarks> remarks_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -29,6 +29,7 @@ constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
 constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
+constexpr double STATUS_WAIT_S = 0.02;
 
 /// At shutdown stops take turns: every one is written before the first of them is read back, so that no motor waits for
 /// another's confirmation; nor for one that somebody asks to be stopped again and again.
@@ -446,6 +447,11 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
     Inverter& inverter = *inverters_[member];
     if (const auto write = nextWrite(now, inverter))
     {
+      if (write->starts && inverter.mustBeSeenRunning())
+      {
+        scheduler_->splitOff(pick.command, member, next_command_++, now + seconds(STATUS_WAIT_S));
+        continue;
+      }
       Current current;
       current.pick = pick;
       current.pick.inverter = member;
@@ -622,6 +628,11 @@ void Coordinator::sent(TimePoint now)
   if (current_->purpose == Purpose::Velocity && !current_->resync)
   {
     inverter.movement.sent(current_->write);
+    if (current_->write.starts)
+    {
+      // The stop that follows is none of a flood.
+      inverter.stop.forgetConfirmation();
+    }
   }
   if (current_->purpose == Purpose::Broadcast)
   {

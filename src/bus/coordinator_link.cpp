@@ -259,7 +259,7 @@ void Coordinator::noteConnection(TimePoint now, const Current& current, const wi
   }
   if (connection_.nobodyAnswered())
   {
-    log(Level::Error, "port " + configuration_.bus.port + ": is open again, but nobody answers");
+    log(Level::Error, "port " + configuration_.bus.port + ": is open again, but nobody answers", PORT);
     connection_.lost();
     loseEverybody(now, wire::ERROR_TIMEOUT);
   }
@@ -291,7 +291,7 @@ void Coordinator::loseEverybody(TimePoint now, std::uint16_t error_id)
     if (!inverter->offline())
     {
       inverter->goOffline(error_id);
-      wentOffline(now, *inverter, error_id);
+      wentOffline(now, *inverter);
     }
     inverter->noteExchangeError(error_id);
   }
@@ -349,8 +349,10 @@ void Coordinator::renewing(TimePoint now)
 {
   if (link_.renewing(now))
   {
-    log(Level::Warn, "port " + configuration_.bus.port +
-                         ": is open, but nobody answers any more: it is opened anew, again and again while that lasts");
+    log(Level::Warn,
+        "port " + configuration_.bus.port +
+            ": is open, but nobody answers any more: it is opened anew, again and again while that lasts",
+        PORT);
   }
   reopening(now);
 }

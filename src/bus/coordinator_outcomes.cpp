@@ -84,12 +84,13 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
   inverter.noteExchange(reply);
   if (current.request.expects_reply)
   {
+    inverter.record.note(reply);
     noteLink(reply);
     noteConnection(reply.finished_at, current, reply);
   }
   if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
   {
-    log(Level::Ok, inverter.config.name + ": online");
+    log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))
@@ -134,6 +135,11 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       doneSetting(current, reply);
       break;
     default:
+      if (inverter.offline())
+      {
+        // Not the port that was gone before.
+        inverter.noteExchangeError(reply.error_id);
+      }
       finishExchange(current, reply, false);
       break;
   }
@@ -163,16 +169,16 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
   // Behind an older request that the gateway still works on it says nothing of this inverter (contract, 8.16).
   if (!behind_another_ && inverter.failed(now, error_id))
   {
-    wentOffline(now, inverter, error_id);
+    wentOffline(now, inverter);
   }
 }
 
 /// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
 void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
-  if (inverter.failed(now, error_id, true))
+  if (!behind_another_ && inverter.failed(now, error_id, true))
   {
-    wentOffline(now, inverter, error_id);
+    wentOffline(now, inverter);
   }
   if (inverter.needsRead())
   {
@@ -180,13 +186,13 @@ void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t
   }
 }
 
-void Coordinator::wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
 {
   scheduler_->eraseVelocity(inverter.index);
   failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
   if (connected_)
   {
-    log(Level::Error, inverter.config.name + ": offline: " + errorText(error_id));
+    log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(), inverter.config.name);
     outputs_.traces.push_back(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -212,7 +218,14 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   if (reply.connection_closed && !inverter.offline())
   {
     // It counts no try: the same frame goes first over the next connection.
-    noteLost(reply.finished_at, inverter, reply.error_id);
+    if (write)
+    {
+      noteLostWrite(reply.finished_at, inverter, reply.error_id);
+    }
+    else
+    {
+      noteLost(reply.finished_at, inverter, reply.error_id);
+    }
     return;
   }
   if (gateway_.active() && alive(reply))
@@ -250,7 +263,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
   }
-  const bool too_many = write && inverter.lost_writes.lost();
+  const bool too_many = write && !behind_another_ && inverter.lost_writes.lost();
   if (too_many && !inverter.offline())
   {
     writesLost(reply.finished_at, inverter);
@@ -277,10 +290,14 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     finishVelocity(current, reply);
     return;
   }
-  inverter.movement.doubtful(current.write);
+  if (!current.resync)
+  {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write, now);
+  }
   const bool lost = !alive(reply);
   // A loop-back that was lost writes nothing.
-  const bool too_many = lost && !current.resync && inverter.lost_writes.lost();
+  const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
   const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
   if (again && !cancelled)
   {
@@ -647,7 +664,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
       sign_of_life.turnaround =
           std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout));
       inverter->answered(sign_of_life);
-      log(Level::Ok, inverter->config.name + ": online (its reply came late)");
+      log(Level::Ok, inverter->config.name + ": online (its reply came late)", inverter->config.name);
     }
   }
 }
@@ -660,6 +677,11 @@ void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bo
   }
   counters_ = counters;
   echo_found_ = echo_found;
+}
+
+void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
+{
+  adapter_.note(latency);
 }
 
 void Coordinator::portOpened(TimePoint now)
@@ -682,7 +704,7 @@ void Coordinator::portOpened(TimePoint now)
     port_complained_ = false;
     port_error_.clear();
     last_error_ = 0;
-    log(Level::Ok, "port " + configuration_.bus.port + " is open");
+    log(Level::Ok, "port " + configuration_.bus.port + " is open", PORT);
   }
   for (const auto& inverter : inverters_)
   {
@@ -699,7 +721,7 @@ void Coordinator::portWorks()
     port_failing_ = false;
     port_complained_ = false;
     port_error_.clear();
-    log(Level::Ok, "port " + configuration_.bus.port + " works again");
+    log(Level::Ok, "port " + configuration_.bus.port + " works again", PORT);
   }
 }
 
@@ -717,7 +739,7 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
-        error + (in_use ? "; trying again for a while" : "; the node keeps trying"));
+        error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);
     portLost(now);
   }
 }
@@ -734,8 +756,10 @@ void Coordinator::portLost(TimePoint now)
                        ": another client may hold it, or it serves another protocol mode");
     return;
   }
-  portFails(now,
-            "port " + port + (unused ? " can be opened, but fails in use: see dmesg, check the adapter" : " is gone"));
+  portFails(now, "port " + port +
+                     (unused                       ? " can be opened, but fails in use: see dmesg, check the adapter"
+                      : configuration_.bus.gateway ? " is gone"
+                                                   : " is gone: plug it in"));
 }
 
 /// \p error says what is wrong with it, once.
@@ -748,7 +772,7 @@ void Coordinator::portFails(TimePoint now, const std::string& error)
   {
     port_failing_ = !port_works_ || line_.telnetFound();
     port_error_ = error;
-    log(Level::Error, port_error_ + "; the node keeps trying");
+    log(Level::Error, port_error_ + "; the node keeps trying", PORT);
     port_complained_ = true;
   }
   connected_ = false;

@@ -22,9 +22,9 @@ std::string rounded(double value, const char* format)
 }
 }  // namespace
 
-void Coordinator::log(Level level, const std::string& text)
+void Coordinator::log(Level level, const std::string& text, const std::string& subject)
 {
-  outputs_.log.push_back({ level, text });
+  outputs_.log.push_back({ level, text, subject });
 }
 
 void Coordinator::publish(TimePoint now, const Inverter& inverter)
@@ -103,6 +103,10 @@ Report Coordinator::report(TimePoint now) const
                                                        : "a second master") +
                            " (" + std::to_string(counters_.foreign_frames) + " so far)" });
   }
+  if (const auto finding = adapter_.finding())
+  {
+    report.findings.push_back(*finding);
+  }
   if (scheduler_->pauseWasCut())
   {
     report.findings.push_back({ Level::Warn,
@@ -122,6 +126,11 @@ Report Coordinator::report(TimePoint now) const
   report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
   report.values.emplace_back("worst stop latency, computed", rounded(toSeconds(worstStop()) * 1e3, "%.1f ms"));
   report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
+  if (!configuration_.bus.gateway)
+  {
+    report.values.emplace_back("adapter latency", adapter_.text());
+  }
+  report.values.emplace_back("longest pause in a reply", rounded(toSeconds(line_.patience()) * 1e3, "%.1f ms"));
   if (gateway_.active())
   {
     report.values.emplace_back("gateway kept by a silent station",

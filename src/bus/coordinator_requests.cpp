@@ -105,6 +105,11 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     }
   }
   judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
+  if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
+  {
+    judged.text =
+        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
+  }
   return judged.error_id;
 }
 
@@ -201,8 +206,8 @@ void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, con
   {
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
-    inverters_[target.first]->refuseCommand(error_id,
-                                            one.text.empty() ? "the group was refused: " + reasons : one.text);
+    one.text.empty() ? inverters_[target.first]->refuseForOther(error_id, reasons)
+                     : inverters_[target.first]->refuseCommand(error_id, one.text);
     refusals_.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
                                                            : "the group was refused: " + reasons);
   }
@@ -284,8 +289,8 @@ bool Coordinator::applyZero(TimePoint now, Inverter& inverter, const Publisher& 
     inverter.interlock.zeroed(now, publisher);
   }
   inverter.acceptCommand();
-  refusals_.accepted(inverter.index);
   inverter.velocityConfirmed();
+  refusals_.accepted(inverter.index);
   if (inverter.stop.pending())
   {
     return false;

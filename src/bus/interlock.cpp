@@ -83,7 +83,7 @@ bool Interlock::open() const
 
 bool Interlock::silent(TimePoint now, const Stream* stream) const
 {
-  Duration needed = std::max(command_timeout_, seconds(SHORTEST_SILENCE_S));
+  Duration needed = silenceNeeded();
   // Whoever is not known may be one of the forgotten, whose stream goes on.
   const bool commanded = stream != nullptr && stream->last;
   TimePoint since = commanded ? *neutral_since_ : std::max(*neutral_since_, forgotten_last_);
@@ -235,6 +235,11 @@ bool Interlock::locked(TimePoint now) const
   }
   return !silent(now, nullptr) || !std::all_of(streams_.begin(), streams_.end(),
                                                [&](const auto& stream) { return silent(now, &stream.second); });
+}
+
+Duration Interlock::silenceNeeded() const
+{
+  return std::max(command_timeout_, seconds(SHORTEST_SILENCE_S));
 }
 
 bool Interlock::stopPending() const

@@ -106,8 +106,8 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
   exchange_error_ = error_id;
   read_failed_ = read_failed_ || !write;
   // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = ++failures_ < offline_after_ && !unreadSinceReturn();
-  if (patience || !read_failed_ || offline_)
+  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
+  if (patience || offline_)
   {
     return false;
   }
@@ -122,14 +122,15 @@ void Inverter::goOffline(std::uint16_t error_id)
   leftover_judged_ = false;
   early_trip_ = false;
   exchange_error_ = error_id;
+  command_error_.wentOffline();
   run_shown_at_.reset();
   run_proven_ = false;
   setup_open = false;
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  interlock.offline();
   stop.forgetConfirmation();
+  interlock.offline();
   movement.drop();
   movement.forgetWords();
   refresh.forget();
@@ -359,6 +360,11 @@ bool Inverter::mayRepeatWords(TimePoint now) const
          movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
 }
 
+bool Inverter::mustBeSeenRunning() const
+{
+  return movement.turnLostAt() && (drive.reports("operation") || drive.reports("running"));
+}
+
 bool Inverter::mayRun() const
 {
   const drive::Monitor& monitor = refresh.fresh();
@@ -400,6 +406,7 @@ Duration Inverter::slowestReply() const
 void Inverter::lateReply(Duration delay)
 {
   latest_late_reply_ = std::max(latest_late_reply_, delay);
+  record.noteLate();
 }
 
 // --- judgement -------------------------------------------------------------------------------------------------------
@@ -409,6 +416,7 @@ Judgement Inverter::judge(TimePoint now)
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
   known_ = true;
+  record.restart();
   ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
@@ -559,6 +567,14 @@ void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, Time
   }
   at_rest_seen_ = false;
   unexpected_motion_ = false;
+  if (movement.turnLostAt() && sent_at > *movement.turnLostAt())
+  {
+    movement.seenRunning();
+    if (!*operation)
+    {
+      judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
+    }
+  }
   operation_seen_ = operation_seen_ || *operation;
   const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
@@ -605,35 +621,61 @@ InverterStatus Inverter::status(TimePoint now) const
   status.reset_active = reset_active;
   status.stop_active = stop.pending();
   status.locked = interlock.locked(now);
-  showError(status);
+  showError(now, status);
   const auto& target = movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
   return status;
 }
 
-/// The one that says most: why it is locked more than that it is, a command's own more than a single exchange's.
-void Inverter::showError(InverterStatus& status) const
+Obstacles Inverter::obstacles() const
 {
-  if (lost_writes.raised())
+  Obstacles obstacles;
+  obstacles.offline = offline_ || unreadSinceReturn();
+  obstacles.stop_pending = interlock.stopPending();
+  obstacles.reset_active = reset_active;
+  obstacles.in_setup = inSetup();
+  obstacles.wrong_drive = !wrongDrive().empty();
+  return obstacles;
+}
+
+/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
+void Inverter::showError(TimePoint now, InverterStatus& status) const
+{
+  const bool away = status.communication_error && exchange_error_ != 0;
+  if (away && !command_error_.countsWhileOffline())
+  {
+    status.error_id = exchange_error_;
+    status.error_text = exchangeText();
+  }
+  else if (lost_writes.raised())
   {
     status.error_id = wire::ERROR_TIMEOUT;
     status.error_text = lost_writes.text();
   }
-  else if (command_error_ != 0)
+  else if (command_error_.id() != 0)
   {
-    status.error_id = command_error_;
-    status.error_text = command_error_text_;
+    Obstacles now_there = obstacles();
+    now_there.locked = interlock.locked(now);
+    status.error_id = command_error_.id();
+    status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
   }
   else if (velocity_error_ != 0)
   {
     status.error_id = velocity_error_;
-    status.error_text = velocity_error_text_;
+    status.error_text = "the last velocity was not carried out: " + velocity_error_text_;
   }
   else if (exchange_error_ != 0)
   {
     status.error_id = exchange_error_;
-    status.error_text = errorText(exchange_error_, gateway_code_);
+    status.error_text = exchangeText();
   }
+}
+
+/// In the drive's own words where it has answered.
+std::string Inverter::exchangeText() const
+{
+  const std::string text = drive.exceptionText(exchange_error_);
+  return text.empty() ? errorText(exchange_error_, gateway_code_) : text;
 }
 
 void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
@@ -650,14 +692,17 @@ void Inverter::velocityConfirmed()
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
 {
-  command_error_ = error_id;
-  command_error_text_ = text;
+  command_error_.set(error_id, text, obstacles());
+}
+
+void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons)
+{
+  command_error_.setForOther(error_id, reasons);
 }
 
 void Inverter::acceptCommand()
 {
-  command_error_ = 0;
-  command_error_text_.clear();
+  command_error_.clear();
 }
 
 void Inverter::noteExchangeError(std::uint16_t error_id)
@@ -665,14 +710,47 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
   exchange_error_ = error_id;
 }
 
-std::vector<Finding> Inverter::errors() const
+std::string Inverter::onlineText() const
+{
+  return "online; locked until it is sent 0, or nothing for " + wire::shownDuration(interlock.silenceNeeded()) +
+         (drive.sequence("forward") == nullptr && drive.sequence("reverse") == nullptr
+              ? "; it gets no velocity, see /diagnostics"
+              : "");
+}
+
+std::string Inverter::offlineReason() const
+{
+  const std::string seen = record.text(drive);
+  return exchangeText() +
+         (seen.empty() || exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
+}
+
+std::string Inverter::offlineText(TimePoint now) const
+{
+  std::string text = "offline (" + hex(exchange_error_) + " " + offlineReason() + "; last answer ";
+  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
+  return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
+}
+
+/// Before the first complete status.
+std::string Inverter::silenceText() const
+{
+  const std::string seen = record.text(drive);
+  return seen.empty() ? "has not been asked yet" : "no complete status yet: " + seen + "; " + record.advice();
+}
+
+std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
+  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  {
+    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+                                           "), since the port is not open: what to do about it is told of the bus" });
+    return findings;
+  }
   if (offline_)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) + " " +
-                                           errorText(exchange_error_, gateway_code_) +
-                                           "); check supply, wiring, station number and serial settings" });
+    findings.push_back({ Level::Error, offlineText(now) });
     return findings;
   }
   if (lost_writes.raised())
@@ -696,11 +774,11 @@ std::vector<Finding> Inverter::errors() const
 
 std::vector<Finding> Inverter::findings(TimePoint now) const
 {
-  std::vector<Finding> findings = errors();
+  std::vector<Finding> findings = errors(now);
   const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
   if (!offline_ && !known_)
   {
-    warn("has not answered yet");
+    warn(silenceText());
   }
   for (const Finding& finding : settings.findings())
   {

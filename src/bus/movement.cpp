@@ -243,6 +243,7 @@ void Movement::confirmedWord(const drive::Word& word, TimePoint now)
   {
     run_confirmed_ = startsWith(word);
     run_changed_at_ = now;
+    turn_lost_at_.reset();
   }
 }
 
@@ -266,8 +267,9 @@ void Movement::confirmed(const Write& write, TimePoint now)
   }
 }
 
-void Movement::doubtful(const Write& write)
+void Movement::doubtful(const Write& write, TimePoint now)
 {
+  turn_lost_at_ = write.starts && run_confirmed_ ? now : turn_lost_at_;
   std::vector<drive::Word> words = write.more;
   words.emplace_back(write.point, write.raw);
   for (const drive::Word& word : words)
@@ -298,6 +300,7 @@ void Movement::stopped(TimePoint now)
   run_possible_ = false;
   run_confirmed_ = false;
   zero_unverified_ = false;
+  turn_lost_at_.reset();
 }
 
 void Movement::forgetWords()
@@ -305,6 +308,7 @@ void Movement::forgetWords()
   words_.clear();
   frequencies_told_ = 0;
   run_confirmed_ = false;
+  turn_lost_at_.reset();
 }
 
 bool Movement::runCommand() const
@@ -320,6 +324,16 @@ bool Movement::runPossible() const
 bool Movement::runConfirmed() const
 {
   return run_confirmed_;
+}
+
+std::optional<TimePoint> Movement::turnLostAt() const
+{
+  return turn_lost_at_;
+}
+
+void Movement::seenRunning()
+{
+  turn_lost_at_.reset();
 }
 
 TimePoint Movement::runChangedAt() const

@@ -446,7 +446,7 @@ std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<Inv
 
 std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<InverterView>& views, bool nothing_else) const
 {
-  using Key = std::tuple<bool, unsigned, bool, std::uint64_t, std::size_t>;
+  using Key = std::tuple<bool, bool, unsigned, bool, std::uint64_t, std::size_t>;
   std::optional<Key> best;
   for (std::size_t index = 0; index < views.size(); ++index)
   {
@@ -460,7 +460,9 @@ std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<Inverte
     {
       continue;
     }
-    const Key key(view.offline, view.stop_attempts, view.stop_written, last_stop_exchange_[index], index);
+    // One of a flood goes behind those that take RUN off, and behind their read-backs.
+    const Key key(view.offline, view.stop_repeats, view.stop_attempts, view.stop_written, last_stop_exchange_[index],
+                  index);
     if (!best || key < *best)
     {
       best = key;
@@ -472,7 +474,7 @@ std::optional<Pick> Scheduler::pickStop(TimePoint now, const std::vector<Inverte
   }
   Pick pick;
   pick.what = Pick::What::Stop;
-  pick.inverter = std::get<4>(*best);
+  pick.inverter = std::get<5>(*best);
   pick.probe = std::get<0>(*best);
   return pick;
 }

@@ -70,7 +70,8 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
   }
   if (beyond(velocity) && config_.limit == Limit::Refuse)
   {
-    const std::string least = config_.min_velocity > 0.0 ? wire::shownNumber(config_.min_velocity, 9) + " to " : "up to ";
+    const std::string least =
+        config_.min_velocity > 0.0 ? wire::shownNumber(config_.min_velocity, 9) + " to " : "up to ";
     return refused("velocity " + wire::shownNumber(velocity, 9) + " is out of range: 0, or " + least +
                    wire::shownNumber(config_.max_velocity, 9) + " in either direction");
   }

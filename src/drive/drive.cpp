@@ -313,7 +313,44 @@ std::string Drive::unconfirmedText() const
   {
     names += (names.empty() ? "" : ", ") + mark;
   }
-  return profile_.unconfirmed.empty() ? "" : names + "; " + adviceFor(profile_.unconfirmed);
+  const std::string unneeded = skippableUnconfirmed();
+  return profile_.unconfirmed.empty()
+             ? ""
+             : names + "; " + adviceFor(profile_.unconfirmed) +
+                   (unneeded.empty() ? "" : "; what nobody needs can be left out: skip: [" + unneeded + "]");
+}
+
+/// Names for `skip` in which something is unconfirmed.
+std::string Drive::skippableUnconfirmed() const
+{
+  std::set<std::string> names;
+  for (const auto& [field, item] : profile_.status)
+  {
+    if (!item.unconfirmed.empty() && skippableFields().count(field) != 0)
+    {
+      names.insert(field);
+    }
+  }
+  if (profile_.store_busy && !profile_.store_busy->unconfirmed.empty())
+  {
+    names.insert("store_busy");
+  }
+  for (const auto& entry : profile_.history.entries)
+  {
+    const bool open = std::any_of(entry.begin(), entry.end(), [](const auto& field) {
+      return field.first != "code" && !field.second.unconfirmed.empty();
+    });
+    if (open)
+    {
+      names.insert("trip_memory");
+    }
+  }
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
 }
 
 /// A value that is known but unproven is confirmed; one that nobody knows is given.

@@ -86,8 +86,8 @@ Profile readProfile(const std::string& path, const ProfileChanges& changes, Prob
   const std::set<std::string> known = unconfirmedNames(*root);
   const std::map<std::string, std::string> constants = constantMarks(*root);
   applyOverrides(*root, changes, problems);
-  confirm(*root, markNames(changes.confirm, known, constants), known, changes.place.empty() ? path : changes.place,
-          problems);
+  const std::string& place = changes.confirm_place.empty() ? changes.place : changes.confirm_place;
+  confirm(*root, markNames(changes.confirm, known, constants), known, place.empty() ? path : place, problems);
   skipFields(*root, changes.skip);
   Profile profile = buildProfile(*root, problems);
   profile.file = path;

@@ -100,7 +100,7 @@ bool isUnknown(const YamlValue& map)
   return std::any_of(map.entries.begin(), map.entries.end(), [](const YamlEntry& entry) {
     const bool place =
         entry.key == "value" || entry.key == "register" || entry.key == "coil" || entry.key == "variable";
-    return place && entry.value.kind == YamlValue::Kind::Scalar && !entry.value.quoted && entry.value.text == UNKNOWN;
+    return place && entry.value.kind == YamlValue::Kind::Scalar && entry.value.text == UNKNOWN;
   });
 }
 

@@ -20,7 +20,8 @@ std::optional<double> readOperationCode(const YamlCursor& cursor)
 {
   static const std::regex FORM("[0-9A-Fa-f]{4}");
   const YamlValue& value = cursor.value();
-  if (value.kind != YamlValue::Kind::Scalar || !value.quoted || !std::regex_match(value.text, FORM))
+  if (value.kind != YamlValue::Kind::Scalar || value.scalar.type != config::Scalar::Type::Text ||
+      !std::regex_match(value.text, FORM))
   {
     cursor.reject("four hexadecimal digits in quotes, such as \"0100\"");
     return std::nullopt;
@@ -41,7 +42,7 @@ Constant readConstant(const YamlCursor& cursor, bool operation_code)
   {
     return constant;
   }
-  if (value->value().text == UNKNOWN && !value->value().quoted)
+  if (value->value().text == UNKNOWN)
   {
     if (constant.unconfirmed.empty())
     {

@@ -98,6 +98,7 @@ void checkName(const std::string& name, const YamlCursor& cursor)
   YamlValue spelled;
   spelled.kind = YamlValue::Kind::Scalar;
   spelled.text = name;
+  spelled.scalar = config::readScalar(name, "!");
   spelled.where = cursor.value().where;
   const bool number = name.size() > 1 && name[0] == '0' && (name[1] == 'x' || name[1] == 'X');
   if (YamlCursor(spelled, cursor.path(), cursor.problems()).name() && number)

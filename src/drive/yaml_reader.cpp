@@ -39,7 +39,7 @@ void YamlCursor::reject(const std::string& allowed) const
   switch (value_->kind)
   {
     case YamlValue::Kind::Scalar:
-      complain("value '" + wire::shown(value_->text) + "'" + (value_->quoted ? " (a text, in quotes)" : "") +
+      complain("value '" + wire::shown(value_->text) + "'" + (value_->scalar.quoted ? " (a text, in quotes)" : "") +
                ": allowed: " + allowed);
       break;
     case YamlValue::Kind::List:
@@ -54,14 +54,36 @@ void YamlCursor::reject(const std::string& allowed) const
   }
 }
 
+void YamlCursor::rejectNumber(const std::string& allowed) const
+{
+  const std::string hint = is(config::Scalar::Type::Text) ? config::hintFor(value_->text) : "";
+  reject(allowed + (hint.empty() ? "" : " (" + hint + ")"));
+}
+
+void YamlCursor::rejectText(const std::string& allowed) const
+{
+  const bool other = value_->kind == YamlValue::Kind::Scalar && !is(config::Scalar::Type::Text);
+  reject(allowed + (other ? "; in quotes, since YAML takes it for something else than a text" : ""));
+}
+
 void YamlCursor::complain(const std::string& what) const
 {
   problems_->add(value_->where, path_, what);
 }
 
-bool YamlCursor::plain() const
+bool YamlCursor::is(config::Scalar::Type type) const
 {
-  return value_->kind == YamlValue::Kind::Scalar && !value_->quoted;
+  return value_->kind == YamlValue::Kind::Scalar && value_->scalar.type == type;
+}
+
+/// What is wanted as a number. 1e2 is a text to YAML and a number to people; nobody means a text by it here.
+std::optional<double> YamlCursor::asNumber() const
+{
+  if (is(config::Scalar::Type::Integer) || is(config::Scalar::Type::Number))
+  {
+    return value_->scalar.number;
+  }
+  return is(config::Scalar::Type::Text) ? config::meantNumber(value_->text) : std::nullopt;
 }
 
 bool YamlCursor::isMap() const
@@ -76,56 +98,55 @@ bool YamlCursor::isList() const
 
 std::optional<std::int64_t> YamlCursor::integer(std::int64_t lowest, std::int64_t highest) const
 {
-  const auto parsed = plain() ? parseInteger(value_->text) : std::nullopt;
-  if (!parsed || *parsed < lowest || *parsed > highest)
+  const std::int64_t value = value_->scalar.integer;
+  if (!is(config::Scalar::Type::Integer) || value < lowest || value > highest)
   {
-    const bool octal = plain() && value_->text.size() > 1 && value_->text[0] == '0' && !parsed;
-    reject("an integer from " + std::to_string(lowest) + " to " + std::to_string(highest) + ", decimal or 0x..." +
-           (octal ? ", without leading zeros" : ""));
+    rejectNumber("an integer from " + std::to_string(lowest) + " to " + std::to_string(highest) + ", decimal or 0x...");
     return std::nullopt;
   }
-  return parsed;
+  return value;
 }
 
 std::optional<double> YamlCursor::number(double lowest, double highest) const
 {
-  const auto parsed = plain() ? parseNumber(value_->text) : std::nullopt;
-  if (!parsed || *parsed < lowest || *parsed > highest)
+  const auto value = asNumber();
+  // Written so that NaN fails too.
+  if (!value || !(*value >= lowest && *value <= highest))
   {
-    reject("a number from " + formatNumber(lowest) + " to " + formatNumber(highest));
+    rejectNumber("a number from " + formatNumber(lowest) + " to " + formatNumber(highest));
     return std::nullopt;
   }
-  return parsed;
+  return value;
 }
 
 std::optional<double> YamlCursor::positive() const
 {
-  const auto parsed = plain() ? parseNumber(value_->text) : std::nullopt;
+  const auto value = asNumber();
   // Resolutions and frequencies: beyond these bounds counts would leave what 32 bits and a double can hold.
-  if (!parsed || *parsed < 1e-9 || *parsed > 1e9)
+  if (!value || !(*value >= 1e-9 && *value <= 1e9))
   {
-    reject("a number above 0 (1e-9 to 1e9)");
+    rejectNumber("a number above 0 (1e-9 to 1e9)");
     return std::nullopt;
   }
-  return parsed;
+  return value;
 }
 
 std::optional<bool> YamlCursor::flag() const
 {
-  if (!plain() || (value_->text != "true" && value_->text != "false"))
+  if (!is(config::Scalar::Type::Boolean))
   {
-    reject("true or false");
+    rejectNumber("true or false");
     return std::nullopt;
   }
-  return value_->text == "true";
+  return value_->scalar.boolean;
 }
 
 std::optional<std::string> YamlCursor::text() const
 {
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
-  if (value_->kind != YamlValue::Kind::Scalar || std::any_of(value_->text.begin(), value_->text.end(), control))
+  if (!is(config::Scalar::Type::Text) || std::any_of(value_->text.begin(), value_->text.end(), control))
   {
-    reject("a text on one line");
+    rejectText("a text on one line");
     return std::nullopt;
   }
   return value_->text;
@@ -135,9 +156,9 @@ std::optional<std::string> YamlCursor::name() const
 {
   const auto good = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
   const std::string& text = value_->text;
-  if (value_->kind != YamlValue::Kind::Scalar || text.empty() || !std::all_of(text.begin(), text.end(), good))
+  if (!is(config::Scalar::Type::Text) || text.empty() || !std::all_of(text.begin(), text.end(), good))
   {
-    reject("a name of letters, digits, '_' and '-'");
+    rejectText("a name of letters, digits, '_' and '-'");
     return std::nullopt;
   }
   return text;
@@ -145,8 +166,7 @@ std::optional<std::string> YamlCursor::name() const
 
 std::optional<std::string> YamlCursor::choice(const std::vector<std::string>& allowed) const
 {
-  if (value_->kind != YamlValue::Kind::Scalar ||
-      std::find(allowed.begin(), allowed.end(), value_->text) == allowed.end())
+  if (!is(config::Scalar::Type::Text) || std::find(allowed.begin(), allowed.end(), value_->text) == allowed.end())
   {
     reject(join(allowed));
     return std::nullopt;

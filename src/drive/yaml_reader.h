@@ -48,7 +48,12 @@ public:
   bool isList() const;
 
 private:
-  bool plain() const;
+  bool is(config::Scalar::Type type) const;
+  std::optional<double> asNumber() const;
+  /// With a hint where the text looks like what was wanted.
+  void rejectNumber(const std::string& allowed) const;
+  /// With a hint where it is a number or a truth value to YAML.
+  void rejectText(const std::string& allowed) const;
 
   const YamlValue* value_;
   std::string path_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "inverter_bus/config/scalar.h"
 #include "problems.h"
 
 namespace inverter_bus
@@ -15,8 +16,7 @@ namespace drive
 {
 struct YamlEntry;
 
-/// A YAML tree in which every value remembers where it stands. yaml-cpp's own nodes lose that when two documents are
-/// merged, and silently keep duplicate keys.
+/// A YAML tree in which every value remembers where it stands, also when two documents are merged.
 struct YamlValue
 {
   enum class Kind
@@ -27,9 +27,10 @@ struct YamlValue
     Map
   };
   Kind kind = Kind::Empty;
+  /// As written, without quotes.
   std::string text;
-  /// "3" in quotes is a text, 3 is a number.
-  bool quoted = false;
+  /// What the text is to YAML: "3" in quotes is a text, 3 is a number.
+  config::Scalar scalar;
   /// "file:line", or the scan list entry of an override.
   std::string where;
   std::vector<YamlValue> items;
@@ -50,8 +51,8 @@ struct YamlEntry
 /// Whether two keys are the same; 0x21 and 33 are.
 bool sameKey(const std::string& a, const std::string& b);
 
-/// Reads one document. \p source file name or place; \p with_lines whether line numbers mean something to the user.
-/// Malformed text, several documents, duplicate keys, aliases into themselves: a problem, and no value.
+/// Reads one document (config/yaml.h). \p source file name or place; \p with_lines whether line numbers mean something to the
+/// user. What is no YAML is a problem, and no value.
 std::optional<YamlValue> parseYaml(const std::string& text, const std::string& source, bool with_lines,
                                    Problems& problems);
 

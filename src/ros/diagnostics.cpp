@@ -78,9 +78,14 @@ void summarize(const std::vector<bus::Finding>& findings, const std::string& in_
   entry.summary(levelOf(sorted.empty() ? bus::Level::Ok : sorted.front().level), text.empty() ? in_order : text);
 }
 
-Diagnostics::Diagnostics(const bus::BusConfig& config, const bus::Bus& bus, const Commands& commands,
-                         const MasterWatch& master_watch)
-  : config_(config), bus_(bus), commands_(commands), master_watch_(master_watch)
+Diagnostics::Diagnostics(const bus::Configuration& configuration, const bus::Bus& bus, const Commands& commands,
+                         const MasterWatch& master_watch, const TraceFiles& traces)
+  : config_(configuration.bus)
+  , drives_(configuration.drives)
+  , bus_(bus)
+  , commands_(commands)
+  , master_watch_(master_watch)
+  , traces_(traces)
 {
   updater_.setHardwareID(config_.port);
   updater_.add("bus", [this](Entry& entry) { showBus(entry); });
@@ -119,7 +124,7 @@ void Diagnostics::work()
 void Diagnostics::showInverter(std::size_t index, Entry& entry) const
 {
   const bus::InverterConfig& config = config_.inverters[index];
-  entry.hardware_id = config.drive + " at " + config_.port + " station " + std::to_string(config.node);
+  entry.hardware_id = drives_[index].profile().name + " at " + config_.port + " station " + std::to_string(config.node);
   if (index >= report_.inverters.size())
   {
     entry.summary(diagnostic_msgs::DiagnosticStatus::WARN, "no report yet");
@@ -142,6 +147,9 @@ void Diagnostics::showBus(Entry& entry) const
   }
   summarize(findings, report_.bus.connected ? "connected" : "not connected", entry);
   addValues(report_.values, entry);
+  const std::optional<TraceFiles::File> file = traces_.last();
+  entry.add("flight recorder, last file", file ? file->path : "none since the start");
+  entry.add("flight recorder, written because of", file ? file->reason : "");
 }
 }  // namespace ros_node
 }  // namespace inverter_bus

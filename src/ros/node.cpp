@@ -37,7 +37,7 @@ std::optional<bus::Configuration> readNodeConfiguration()
 {
   try
   {
-    return bus::readConfiguration(readParameters(), "~", profileDirectory());
+    return bus::readConfiguration(readParameters(), "~", drive::shippedProfileDirectory());
   }
   catch (const drive::ConfigurationError& error)
   {
@@ -64,6 +64,10 @@ void logMistakes(const std::vector<drive::Drive>& drives)
 
 void logStart(const bus::Configuration& configuration, const bus::Bus& bus)
 {
+  for (const std::string& warning : configuration.warnings)
+  {
+    log(bus::Level::Warn, warning);
+  }
   for (const std::string& line : effectiveConfiguration(configuration.bus))
   {
     log(bus::Level::Ok, line);
@@ -123,14 +127,14 @@ int runNode(Lifetime& lifetime)
   }
   const bus::BusConfig& config = configuration->bus;
   TraceFiles traces(config.trace_directory, ros::this_node::getName(),
-                    [](const std::string& text) { log(bus::Level::Warn, text); });
+                    [](bus::Level level, const std::string& text) { log(level, text); });
   Publishing publishing(node, *configuration, traces);
   bus::Bus bus(*configuration, bus::makePort(config), publishing);
   logStart(*configuration, bus);
   Services services(node, config, bus, traces);
   Commands commands(node, config, bus);
   MasterWatch master_watch;
-  Diagnostics diagnostics(config, bus, commands, master_watch);
+  Diagnostics diagnostics(*configuration, bus, commands, master_watch, traces);
   // Everything that may wait for the master lies behind: from here on the end is ours.
   lifetime.busIsRunning();
   bus.start();

@@ -2,9 +2,6 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/ros/parameters.h"
 
-#include <cstdlib>
-#include <filesystem>
-
 #include <ros/param.h>
 #include <ros/this_node.h>
 
@@ -87,27 +84,6 @@ bus::Value readParameters()
     return empty;
   }
   return toValue(parameters);
-}
-
-std::string profileDirectory()
-{
-  namespace fs = std::filesystem;
-  if (const char* directory = std::getenv("INVERTER_BUS_DRIVES"))
-  {
-    return directory;
-  }
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  // <prefix>/lib/inverter_bus/<program>, wherever the prefix has been moved to.
-  const fs::path installed = program.parent_path() / "../../share/inverter_bus/config/drives";
-  for (const fs::path& directory : { installed, fs::path(INVERTER_BUS_SOURCE_SHARE) / "config/drives" })
-  {
-    if (fs::is_directory(directory, error))
-    {
-      return directory.lexically_normal().string();
-    }
-  }
-  return (fs::path(INVERTER_BUS_INSTALL_SHARE) / "config/drives").string();
 }
 }  // namespace ros_node
 }  // namespace inverter_bus

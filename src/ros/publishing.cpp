@@ -86,20 +86,49 @@ void Publishing::add(std::deque<Item>& queue, Item item)
 void Publishing::work()
 {
   std::unique_lock<std::mutex> lock(mutex_);
-  while (true)
+  while (!stopping_ || !findings_.empty() || !statuses_.empty())
   {
-    changed_.wait(lock, [this] { return stopping_ || !findings_.empty() || !statuses_.empty(); });
-    if (findings_.empty() && statuses_.empty())
-    {
-      return;
-    }
-    std::deque<Item>& queue = findings_.empty() ? statuses_ : findings_;
-    const Item item = std::move(queue.front());
-    queue.pop_front();
+    waitForWork(lock);
+    const std::optional<Item> item = takeNext();
     lock.unlock();
-    handle(item);
+    if (item)
+    {
+      handle(*item);
+    }
+    for (const bus::Finding& finding : throttle_.takeDue(std::chrono::steady_clock::now()))
+    {
+      write(finding);
+    }
     lock.lock();
   }
+  for (const bus::Finding& finding : throttle_.takeHeld())
+  {
+    write(finding);
+  }
+}
+
+void Publishing::waitForWork(std::unique_lock<std::mutex>& lock)
+{
+  const auto ready = [this] { return stopping_ || !findings_.empty() || !statuses_.empty(); };
+  if (const std::optional<TimePoint> due = throttle_.nextDue())
+  {
+    changed_.wait_until(lock, *due, ready);
+    return;
+  }
+  changed_.wait(lock, ready);
+}
+
+/// What is to be logged goes first.
+std::optional<Publishing::Item> Publishing::takeNext()
+{
+  std::deque<Item>& queue = findings_.empty() ? statuses_ : findings_;
+  if (queue.empty())
+  {
+    return std::nullopt;
+  }
+  std::optional<Item> item = std::move(queue.front());
+  queue.pop_front();
+  return item;
 }
 
 void Publishing::handle(const Item& item)
@@ -134,10 +163,14 @@ void Publishing::publish(const bus::BusStatus& status)
 
 void Publishing::publish(const bus::Finding& finding)
 {
-  if (!throttle_.admit(finding.text, std::chrono::steady_clock::now()))
+  if (throttle_.admit(finding, std::chrono::steady_clock::now()))
   {
-    return;
+    write(finding);
   }
+}
+
+void Publishing::write(const bus::Finding& finding)
+{
   const std::size_t suppressed = throttle_.takeSuppressed();
   const std::string more = suppressed == 0 ? "" : " (" + std::to_string(suppressed) + " repeated lines left out)";
   ros_node::log(finding.level, finding.text + more);

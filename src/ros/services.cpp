@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/ros/services.h"
 
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -195,7 +196,8 @@ void Services::answerWriteParameter(std::size_t index, const WriteParameter::Req
 void Services::answerDumpTrace(std_srvs::Trigger::Response& response)
 {
   std::string error;
-  const std::string path = traces_.write(bus_.dumpTrace(), error);
+  const std::string path =
+      traces_.writeAsked([this] { return bus_.dumpTrace(); }, std::chrono::steady_clock::now(), error);
   response.success = !path.empty();
   response.message = path.empty() ? error : path;
 }

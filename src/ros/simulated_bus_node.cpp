@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 
-// The simulated bus as a ROS node: parameters in, service ~command, everything else is inverter_bus_simulation.
+// The simulated bus as a ROS node: parameters in, service ~command, everything else is inverter_bus_bench and
+// inverter_bus_simulation.
 
 #include <csignal>
 #include <cstdlib>
@@ -14,7 +15,10 @@
 #include <ros/ros.h>
 
 #include "inverter_bus/InjectFault.h"
+#include "inverter_bus/bench/scan_list.h"
+#include "inverter_bus/drive/profile.h"
 #include "inverter_bus/ros/command_line.h"
+#include "inverter_bus/ros/parameters.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "inverter_bus/simulation/bus_runner.h"
 #include "inverter_bus/simulation/simulated_bus.h"
@@ -29,58 +33,45 @@ const char* const USAGE =
     "name\n"
     "of the link to the terminal), best by simulated_bus.launch. Without ROS: simulated_bus --help\n";
 
-/// A parameter tree as YAML text (flow style, every scalar quoted).
-std::string toYaml(XmlRpc::XmlRpcValue& value)
-{
-  std::string text;
-  switch (value.getType())
-  {
-    case XmlRpc::XmlRpcValue::TypeStruct:
-      for (auto& entry : value)
-      {
-        text += (text.empty() ? "" : ", ") + ("\"" + entry.first + "\": ") + toYaml(entry.second);
-      }
-      return "{" + text + "}";
-    case XmlRpc::XmlRpcValue::TypeArray:
-      for (int i = 0; i < value.size(); ++i)
-      {
-        text += (i == 0 ? "" : ", ") + toYaml(value[i]);
-      }
-      return "[" + text + "]";
-    case XmlRpc::XmlRpcValue::TypeBoolean:
-      return static_cast<bool>(value) ? "true" : "false";
-    case XmlRpc::XmlRpcValue::TypeInt:
-      return std::to_string(static_cast<int>(value));
-    case XmlRpc::XmlRpcValue::TypeDouble:
-      return std::to_string(static_cast<double>(value));
-    case XmlRpc::XmlRpcValue::TypeString:
-      for (const char character : static_cast<std::string>(value))
-      {
-        text += std::string(character == '"' || character == '\\' ? "\\" : "") + character;
-      }
-      return "\"" + text + "\"";
-    default:
-      return "~";
-  }
-}
+/// Parameters of this node beside those of the driver; `port` is the driver's too, and the link where there is no `link`.
+const char* const OWN_KEYS[] = { "link", "gap", "gap_tolerance", "turnaround", "seed", "trace", "client_parity" };
 
 sim::BusConfig readConfig()
 {
-  XmlRpc::XmlRpcValue parameters;
-  if (!ros::param::get(ros::this_node::getName(), parameters))
+  inverter_bus::config::Value parameters = inverter_bus::ros_node::readParameters();
+  for (const char* key : OWN_KEYS)
   {
-    throw sim::ConfigError("scan_list: missing (allowed: a scan list loaded into the node's private parameters)");
+    parameters.map.erase(key);
   }
-  sim::BusConfig config = sim::busConfigFromText(toYaml(parameters));
+  inverter_bus::bench::SimulatedScanList list =
+      inverter_bus::bench::readScanList(parameters, "~", inverter_bus::drive::shippedProfileDirectory());
+  for (const std::string& warning : list.warnings)
+  {
+    ROS_WARN("%s", warning.c_str());
+  }
   double turnaround = 0.0;
   if (ros::param::get("~turnaround", turnaround))
   {
-    for (sim::DriveConfig& drive : config.drives)
+    for (sim::DriveConfig& drive : list.config.drives)
     {
       drive.options.turnaround = turnaround;
     }
   }
-  return config;
+  return list.config;
+}
+
+void assumeParity(sim::BusRunner& runner)
+{
+  std::string parity;
+  if (!ros::param::get("~client_parity", parity))
+  {
+    return;
+  }
+  if (parity != "none" && parity != "even" && parity != "odd")
+  {
+    throw sim::ConfigError("client_parity: " + parity + " (allowed: none, even, odd)");
+  }
+  runner.assumeParity(parity == "none" ? sim::Parity::NONE : (parity == "even" ? sim::Parity::EVEN : sim::Parity::ODD));
 }
 
 std::string readLink()
@@ -132,6 +123,7 @@ void play(ros::NodeHandle& node)
     bus.setObserver([&](const sim::FrameRecord& frame) { *trace << sim::frameText(frame, bus.start()) << std::endl; });
   }
   sim::BusRunner runner(bus, readLink());
+  assumeParity(runner);
   std::exception_ptr failure;
   std::thread line([&] {
     try

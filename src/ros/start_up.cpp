@@ -8,6 +8,7 @@
 #include <ros/master.h>
 
 #include "inverter_bus/ros/log.h"
+#include "inverter_bus/ros/trace_files.h"
 #include "inverter_bus/wire/shown_number.h"
 
 namespace inverter_bus
@@ -55,7 +56,8 @@ std::string busLine(const bus::BusConfig& config)
        << wire::shownNumber(config.interval) << " s, response_timeout " << wire::shownNumber(config.response_timeout)
        << " s, retries " << config.retries << ", offline_after " << config.offline_after << ", idle_divisor "
        << config.idle_divisor << ", realtime_priority " << config.realtime_priority << ", parameter_access "
-       << (config.parameters_read_only ? "read_only" : "read_write") << ", trace_directory " << config.trace_directory;
+       << (config.parameters_read_only ? "read_only" : "read_write") << ", trace_directory "
+       << expandHome(config.trace_directory);
   return line.str();
 }
 

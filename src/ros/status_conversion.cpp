@@ -152,7 +152,7 @@ InverterStatus toMessage(const bus::InverterStatus& status, const bus::InverterC
   message.header.stamp = status.has_stamp ? toRosTime(status.stamp, moment) : ros::Time();
   message.name = config.name;
   message.node = config.node;
-  message.drive = config.drive + (status.model.empty() ? "" : " " + status.model);
+  message.drive = drive.profile().name + (status.model.empty() ? "" : " " + status.model);
   putOwn(status, message);
   // The bus empties the monitor of an offline inverter; should it not, what the drive said last is no status any more.
   const drive::Monitor nothing;

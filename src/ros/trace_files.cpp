@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "inverter_bus/ros/trace_text.h"
+#include "inverter_bus/wire/shown.h"
 
 namespace inverter_bus
 {
@@ -29,9 +30,13 @@ namespace
 namespace fs = std::filesystem;
 
 constexpr Duration AUTOMATIC_PERIOD = std::chrono::seconds(10);
+constexpr Duration ASKED_PERIOD = std::chrono::seconds(1);
 constexpr std::size_t FILES_KEPT = 50;
 constexpr std::size_t LONGEST_REASON = 60;
 const char* const EXTENSION = ".txt";
+/// In a file's name, between its number and the reason. A reason has no '-', so that it can't look like this.
+const char* const AUTOMATIC = "-";
+const char* const ASKED = "-asked-";
 
 /// \p text with everything but letters and digits made a single '_', so that it can't leave the directory.
 std::string safeName(const std::string& text)
@@ -75,6 +80,12 @@ bool isTrace(const std::string& name, const std::string& prefix)
   return std::all_of(date, date + DATE_SIZE, is_digit) && date[DATE_SIZE] == 'T';
 }
 
+/// Which of the two kinds a file of ours is; those of earlier versions count as written by themselves.
+std::string kindOf(const std::string& name)
+{
+  return name.find(ASKED) == std::string::npos ? AUTOMATIC : ASKED;
+}
+
 /// Writes a file that must not exist yet. Returns 0 or an errno.
 int writeNewFile(const std::string& path, const std::string& text)
 {
@@ -97,6 +108,13 @@ int writeNewFile(const std::string& path, const std::string& text)
 
 std::string expandHome(const std::string& path)
 {
+  static const std::string ROS_FOLDER = "~/.ros";
+  const bool in_ros_folder = path == ROS_FOLDER || path.compare(0, ROS_FOLDER.size() + 1, ROS_FOLDER + "/") == 0;
+  const char* ros_home = std::getenv("ROS_HOME");
+  if (in_ros_folder && ros_home != nullptr && *ros_home != '\0')
+  {
+    return ros_home + path.substr(ROS_FOLDER.size());
+  }
   if (path != "~" && path.compare(0, 2, "~/") != 0)
   {
     return path;
@@ -110,8 +128,8 @@ std::string expandHome(const std::string& path)
   return home + path.substr(1);
 }
 
-TraceFiles::TraceFiles(const std::string& directory, const std::string& node_name, Warn warn)
-  : directory_(expandHome(directory)), prefix_(safeName(node_name) + "-"), warn_(std::move(warn))
+TraceFiles::TraceFiles(const std::string& directory, const std::string& node_name, Log log)
+  : directory_(expandHome(directory)), prefix_(safeName(node_name) + "-"), log_(std::move(log))
 {
   thread_ = std::thread([this] { work(); });
 }
@@ -136,14 +154,30 @@ void TraceFiles::writeSoon(bus::TraceDump dump)
   changed_.notify_one();
 }
 
-std::string TraceFiles::write(const bus::TraceDump& dump, std::string& error)
+std::string TraceFiles::writeAsked(const std::function<bus::TraceDump()>& record, TimePoint now, std::string& error)
+{
+  const std::lock_guard<std::mutex> lock(writing_);
+  if (last_asked_at_ && now - *last_asked_at_ < ASKED_PERIOD)
+  {
+    return last_asked_;
+  }
+  const std::string path = write(record(), ASKED, error);
+  if (!path.empty())
+  {
+    last_asked_ = path;
+    last_asked_at_ = now;
+  }
+  return path;
+}
+
+/// With \ref writing_ held.
+std::string TraceFiles::write(const bus::TraceDump& dump, const std::string& kind, std::string& error)
 {
   std::ostringstream text;
   writeTrace(dump, std::chrono::steady_clock::now(), std::chrono::system_clock::now(), text);
-  const std::lock_guard<std::mutex> lock(writing_);
   std::error_code result;
   fs::create_directories(directory_, result);
-  std::string path = newPath(dump.reason);
+  std::string path = newPath(kind, dump.reason);
   // Under another name first: whoever watches the directory never sees half a file.
   const std::string part = path + ".part";
   const int problem = writeNewFile(part, text.str());
@@ -154,8 +188,20 @@ std::string TraceFiles::write(const bus::TraceDump& dump, std::string& error)
     std::remove(part.c_str());
     return "";
   }
-  removeOldFiles(path);
+  removeOldFiles(path, kind);
+  const std::string reason = wire::shown(dump.reason);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_ = File{ path, reason };
+  }
+  log_(bus::Level::Ok, "flight recorder (" + reason + ") written to " + path);
   return path;
+}
+
+std::optional<TraceFiles::File> TraceFiles::last() const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return last_;
 }
 
 void TraceFiles::stop()
@@ -186,9 +232,13 @@ void TraceFiles::work()
     waiting_.reset();
     lock.unlock();
     std::string error;
-    if (write(dump, error).empty() && error != last_error)
     {
-      warn_(error);
+      const std::lock_guard<std::mutex> writing(writing_);
+      write(dump, AUTOMATIC, error);
+    }
+    if (!error.empty() && error != last_error)
+    {
+      log_(bus::Level::Warn, error);
     }
     last_error = error;
     lock.lock();
@@ -196,23 +246,24 @@ void TraceFiles::work()
 }
 
 /// The number keeps names apart and in order when the wall clock stands still or goes back.
-std::string TraceFiles::newPath(const std::string& reason)
+std::string TraceFiles::newPath(const std::string& kind, const std::string& reason)
 {
   char number[16];
-  std::snprintf(number, sizeof number, "-%04u-", ++number_ % 10000U);
+  std::snprintf(number, sizeof number, "-%04u", ++number_ % 10000U);
   const std::string name =
-      prefix_ + fileStamp(std::chrono::system_clock::now()) + number + safeName(reason) + EXTENSION;
+      prefix_ + fileStamp(std::chrono::system_clock::now()) + number + kind + safeName(reason) + EXTENSION;
   return (fs::path(directory_) / name).string();
 }
 
-void TraceFiles::removeOldFiles(const std::string& newest) const
+void TraceFiles::removeOldFiles(const std::string& newest, const std::string& kind) const
 {
   std::vector<std::string> files;
   std::error_code error;
   for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error))
   {
     const std::string path = entry->path().string();
-    if (path != newest && isTrace(entry->path().filename().string(), prefix_))
+    const std::string name = entry->path().filename().string();
+    if (path != newest && isTrace(name, prefix_) && kindOf(name) == kind)
     {
       files.push_back(path);
     }

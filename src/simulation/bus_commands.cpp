@@ -27,7 +27,7 @@ const char* const HELP =
     "NAME show|get CODE|set CODE X|offline [S]|online|trip N [state S]|clear|busy S|power_cycle [S]|power on/off|panel "
     "HZ|"
     "panel_release|panel_stop|sto on/off|load X|damaged|truncated [BYTES]|noise [BYTES]|late S|foreign station/shape|"
-    "exception N|lost_request|lost_reply [count N] [for S] [function F]";
+    "exception N|lost_request|lost_reply [count N] [for S] [function F] [writes|reads] [longer BYTES]";
 
 std::string joined(const KeyValues& values)
 {
@@ -63,7 +63,10 @@ std::optional<TimePoint> takeEnd(CommandWords& words, TimePoint now)
 std::string showBus(SimulatedBus& bus)
 {
   const LineCounters& line = bus.line().counters();
+  const LineSettings& master = bus.line().options().settings;
   return joined({ { "plugged_in", bus.pluggedIn() ? "1" : "0" },
+                  { "master", std::to_string(master.baud_rate) + "/" + std::to_string(master.data_bits) +
+                                  letterOf(master.parity) + std::to_string(master.stop_bits) },
                   { "requests", std::to_string(line.requests) },
                   { "replies", std::to_string(line.replies) },
                   { "lost_gap", std::to_string(line.lost_gap) },
@@ -182,7 +185,7 @@ const std::map<std::string, BusAction>& busActions()
   return ACTIONS;
 }
 
-/// The words after a fault: how often, how long, for which function.
+/// The words after a fault: how often, how long, for which exchanges.
 void takeScope(CommandWords& words, Fault& fault, TimePoint now)
 {
   while (!words.empty())
@@ -200,10 +203,28 @@ void takeScope(CommandWords& words, Fault& fault, TimePoint now)
     {
       fault.function = static_cast<int>(words.takeNumber("function", 0, 65535));
     }
+    else if (words.takeIf("writes"))
+    {
+      fault.access = Access::WRITE;
+    }
+    else if (words.takeIf("reads"))
+    {
+      fault.access = Access::READ;
+    }
+    else if (words.takeIf("longer"))
+    {
+      fault.longer_than = static_cast<std::size_t>(words.takeNumber("bytes", 1, 255));
+    }
     else
     {
-      throw CommandError("unexpected word " + words.peek() + " (allowed: count N, for S, function F)");
+      throw CommandError("unexpected word " + words.peek() +
+                         " (allowed: count N, for S, function F, writes, reads, longer BYTES)");
     }
+  }
+  const bool before_reply = fault.kind == FaultKind::LOST_REQUEST || fault.kind == FaultKind::EXCEPTION;
+  if (before_reply && fault.longer_than > 0)
+  {
+    throw CommandError("longer BYTES is for faults of a reply, not for lost_request and exception");
   }
 }
 

@@ -16,12 +16,14 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include "inverter_bus/simulation/terminal_settings.h"
+
 namespace inverter_bus
 {
 namespace simulation
 {
 BusRunner::BusRunner(SimulatedBus& bus, const std::string& link)
-  : bus_(bus), terminal_(link), wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
+  : bus_(bus), terminal_(link, bus.line().options().settings), wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
 {
   if (wake_ < 0)
   {
@@ -38,6 +40,11 @@ void BusRunner::readCommands(int descriptor, std::function<void(const std::strin
 {
   command_descriptor_ = descriptor;
   answer_ = std::move(answer);
+}
+
+void BusRunner::assumeParity(Parity parity)
+{
+  assumed_parity_ = parity;
 }
 
 const PseudoTerminal& BusRunner::terminal() const
@@ -142,10 +149,30 @@ void BusRunner::step(bool readable)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const TimePoint now = Clock::now();
+  if (readable)
+  {
+    matchSettings(now);
+  }
   const Bytes received = readable ? terminal_.read() : Bytes();
   bus_.send(received, now);  // nothing received: moves the time only
   matchPort();
   handOver();
+}
+
+/// A client sets its port before it sends, so it is enough to look when bytes come.
+void BusRunner::matchSettings(TimePoint now)
+{
+  std::optional<LineSettings> seen = settingsOf(terminal_.descriptor(), bus_.line().options().settings);
+  if (!seen)
+  {
+    return;
+  }
+  seen->parity = assumed_parity_.value_or(seen->parity);
+  if (!master_ || master_->text() != seen->text())
+  {
+    bus_.setMaster(*seen, now);
+    master_ = seen;
+  }
 }
 
 void BusRunner::handOver()

@@ -117,6 +117,16 @@ std::optional<int> CompowaySlave::functionOf(const Bytes& frame) const
   return text.size() >= SERVICE_SIZE && service ? std::optional<int>(static_cast<int>(*service)) : std::nullopt;
 }
 
+Access CompowaySlave::accessOf(const Bytes& frame) const
+{
+  constexpr int WRITE_VARIABLES = 0x0102;
+  constexpr int OPERATION = 0x3005;
+  constexpr int ECHOBACK = 0x0801;
+  const int service = functionOf(frame).value_or(ECHOBACK);
+  const bool writes = service == WRITE_VARIABLES || service == OPERATION;
+  return service == ECHOBACK ? Access::NEITHER : writes ? Access::WRITE : Access::READ;
+}
+
 Answer CompowaySlave::reply(const std::string& body, bool exception) const
 {
   return Answer{ compowayFrame(body), replyDelay(), exception };

@@ -87,10 +87,9 @@ Protocol protocolOf(const DriveConfig& config)
 
 std::unique_ptr<SimulatedDrive> makeDrive(const DriveConfig& config)
 {
-  const Model& model = modelOf(config);
   try
   {
-    return model.make(config.options);
+    return config.make ? config.make(config.options) : modelOf(config).make(config.options);
   }
   catch (const std::invalid_argument& error)
   {

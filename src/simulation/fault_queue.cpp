@@ -24,7 +24,18 @@ std::size_t FaultQueue::size() const
   return faults_.size();
 }
 
-std::vector<Fault> FaultQueue::take(std::optional<int> function, TimePoint now)
+std::vector<Fault> FaultQueue::take(const ExchangeFacts& exchange, TimePoint now)
+{
+  return takeSome(exchange, 0, false, now);
+}
+
+std::vector<Fault> FaultQueue::takeForReply(const ExchangeFacts& exchange, std::size_t reply_size, TimePoint now)
+{
+  return takeSome(exchange, reply_size, true, now);
+}
+
+std::vector<Fault> FaultQueue::takeSome(const ExchangeFacts& exchange, std::size_t reply_size, bool long_only,
+                                        TimePoint now)
 {
   std::vector<Fault> hits;
   if (faults_.empty())
@@ -37,7 +48,10 @@ std::vector<Fault> FaultQueue::take(std::optional<int> function, TimePoint now)
   for (Fault& fault : faults_)
   {
     const bool again = std::any_of(hits.begin(), hits.end(), [&](const Fault& hit) { return hit.kind == fault.kind; });
-    if (again || (fault.function && fault.function != function))
+    const bool its_size = long_only ? fault.longer_than > 0 && reply_size > fault.longer_than : fault.longer_than == 0;
+    const bool meant =
+        (!fault.function || fault.function == exchange.function) && (!fault.access || *fault.access == exchange.access);
+    if (again || !its_size || !meant)
     {
       continue;
     }

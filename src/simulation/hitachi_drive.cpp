@@ -54,7 +54,7 @@ HitachiDrive::HitachiDrive(const HitachiModel& model, const DriveOptions& option
   motor_.setLoad(options.load);
   trips_.resize(TRIP_BLOCKS);
   buildMonitors();
-  serial_fits_ = serialFits();
+  setSerial(serialInEffect());
   control();
 }
 
@@ -102,18 +102,22 @@ void HitachiDrive::commission(const std::string& code, double value)
   commissionAtPanel(memory_, model_.name, code, value);
 }
 
-bool HitachiDrive::serialFits() const
+std::optional<LineSettings> HitachiDrive::serialInEffect() const
 {
-  const auto baud = model_.bauds.find(options_.line.baud_rate);
-  bool fits = baud != model_.bauds.end() && memory_.ram(code_.c071) == baud->second &&
-              memory_.ram(code_.c074) == static_cast<std::uint32_t>(options_.line.parity) &&
-              options_.line.data_bits == 8;
+  const auto baud = std::find_if(model_.bauds.begin(), model_.bauds.end(),
+                                 [this](const auto& one) { return memory_.ram(code_.c071) == one.second; });
   const Index data_bits = memory_.find("C073");
-  if (data_bits != ParameterMemory::NONE)
+  const bool modbus =
+      data_bits == ParameterMemory::NONE || (memory_.ram(data_bits) == 8 && memory_.ram(memory_.find("C079")) == 1);
+  if (baud == model_.bauds.end() || !modbus)
   {
-    fits = fits && memory_.ram(data_bits) == 8 && memory_.ram(memory_.find("C079")) == 1;
+    return std::nullopt;
   }
-  return fits;
+  LineSettings serial;
+  serial.baud_rate = baud->first;
+  serial.parity = static_cast<Parity>(memory_.ram(code_.c074));
+  serial.stop_bits = static_cast<int>(memory_.ram(code_.c075));
+  return serial;
 }
 
 const Motor& HitachiDrive::motor() const
@@ -124,11 +128,6 @@ const Motor& HitachiDrive::motor() const
 bool HitachiDrive::tripped() const
 {
   return tripped_;
-}
-
-bool HitachiDrive::understandsLine() const
-{
-  return serial_fits_;
 }
 
 double HitachiDrive::startUpTime() const
@@ -413,7 +412,7 @@ void HitachiDrive::losePower()
 void HitachiDrive::gainPower()
 {
   setStation(static_cast<int>(memory_.ram(code_.c072)));
-  serial_fits_ = serialFits();
+  setSerial(serialInEffect());
   if (safe_stop_)
   {
     doTrip(37);

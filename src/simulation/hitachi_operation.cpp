@@ -130,6 +130,7 @@ void HitachiDrive::describeMotor(KeyValues& values) const
   flag("tripped", tripped_);
   add("trip", std::to_string(tripped_ ? trips_.front().code : 0));
   add("last_trip", std::to_string(trips_.front().code));
+  add("status_b", std::to_string(tripped_ ? trip_state_ : 0));
   add("trips", std::to_string(trip_count_));
   add("command_source", std::to_string(memory_.ram(code_.a002)));
   flag("panel", panel_.has_value());

@@ -52,7 +52,7 @@ JeDrive::JeDrive(const DriveOptions& options)
   motor_.setRating(
       { std::max(0.1, panelValue(memory_, code_.p01)), options.rated_voltage, panelValue(memory_, code_.p06) });
   motor_.setLoad(options.load);
-  serial_fits_ = serialFits();
+  setSerial(serialInEffect(), true);
   control();
 }
 
@@ -78,18 +78,15 @@ void JeDrive::commission()
   }
 }
 
-bool JeDrive::serialFits() const
+LineSettings JeDrive::serialInEffect() const
 {
-  const LineSettings& line = options_.line;
-  return memory_.ram(code_.p16) * 100 == static_cast<std::uint32_t>(line.baud_rate) &&
-         memory_.ram(code_.p17) == static_cast<std::uint32_t>(line.data_bits) &&
-         memory_.ram(code_.p18) == static_cast<std::uint32_t>(line.stop_bits) &&
-         memory_.ram(code_.p19) == static_cast<std::uint32_t>(line.parity);
-}
-
-bool JeDrive::understandsLine() const
-{
-  return serial_fits_;
+  LineSettings serial;
+  serial.protocol = Protocol::COMPOWAY_F;
+  serial.baud_rate = static_cast<int>(memory_.ram(code_.p16) * 100);
+  serial.data_bits = static_cast<int>(memory_.ram(code_.p17));
+  serial.stop_bits = static_cast<int>(memory_.ram(code_.p18));
+  serial.parity = static_cast<Parity>(memory_.ram(code_.p19));
+  return serial;
 }
 
 double JeDrive::startUpTime() const
@@ -191,7 +188,7 @@ void JeDrive::gainPower()
     run_ = run_before_power_cut_;
   }
   setStation(static_cast<int>(memory_.ram(code_.p15)));
-  serial_fits_ = serialFits();
+  setSerial(serialInEffect(), true);
   control();
 }
 

@@ -95,6 +95,14 @@ std::optional<int> ModbusSlave::functionOf(const Bytes& frame) const
   return frame.size() > 1 ? std::optional<int>(frame[1]) : std::nullopt;
 }
 
+Access ModbusSlave::accessOf(const Bytes& frame) const
+{
+  constexpr int LOOPBACK = 0x08;
+  constexpr int LAST_READ = 0x04;
+  const int function = functionOf(frame).value_or(LOOPBACK);
+  return function == LOOPBACK ? Access::NEITHER : function <= LAST_READ ? Access::READ : Access::WRITE;
+}
+
 Answer ModbusSlave::exceptionAnswer(const Bytes& frame, int code)
 {
   const Bytes reply{ frame[0], static_cast<std::uint8_t>(frame[1] | 0x80U), static_cast<std::uint8_t>(code) };

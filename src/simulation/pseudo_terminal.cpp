@@ -11,8 +11,9 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <termios.h>
 #include <unistd.h>
+
+#include "inverter_bus/simulation/terminal_settings.h"
 
 namespace inverter_bus
 {
@@ -24,19 +25,9 @@ namespace
 {
   throw std::runtime_error(what + ": " + std::strerror(errno));
 }
-
-void makeRaw(int descriptor)
-{
-  termios settings{};
-  if (tcgetattr(descriptor, &settings) == 0)
-  {
-    cfmakeraw(&settings);
-    tcsetattr(descriptor, TCSANOW, &settings);
-  }
-}
 }  // namespace
 
-PseudoTerminal::PseudoTerminal(const std::string& link) : link_(link)
+PseudoTerminal::PseudoTerminal(const std::string& link, const LineSettings& settings) : link_(link), settings_(settings)
 {
   open();
 }
@@ -61,7 +52,7 @@ void PseudoTerminal::open()
   {
     fail(path_);
   }
-  makeRaw(far_);
+  setTerminal(far_, settings_);
   try
   {
     makeLink();

@@ -69,6 +69,12 @@ void SimulatedBus::send(const Bytes& bytes, TimePoint now)
   line_.receive(bytes, now);
 }
 
+void SimulatedBus::setMaster(const LineSettings& settings, TimePoint now)
+{
+  advance(now);
+  line_.setMaster(settings, now);
+}
+
 std::optional<TimePoint> SimulatedBus::nextEvent() const
 {
   std::optional<TimePoint> next = line_.nextEvent();

@@ -73,7 +73,23 @@ bool SimulatedDrive::answersDamaged() const
 
 bool SimulatedDrive::understandsLine() const
 {
-  return true;
+  if (!serial_told_ || !serial_ || !line_)
+  {
+    return !serial_told_ || serial_;
+  }
+  return serial_->understands(*line_) && (!stop_bits_matter_ || serial_->stop_bits == line_->stop_bits);
+}
+
+void SimulatedDrive::setLine(const LineSettings& line)
+{
+  line_ = line;
+}
+
+void SimulatedDrive::setSerial(const std::optional<LineSettings>& serial, bool stop_bits_matter)
+{
+  stop_bits_matter_ = stop_bits_matter;
+  serial_ = serial;
+  serial_told_ = true;
 }
 
 void SimulatedDrive::goDeaf(TimePoint until)
@@ -137,10 +153,13 @@ std::optional<Answer> SimulatedDrive::handle(const Bytes& frame, TimePoint now)
     }
   }
   const bool for_all = isBroadcast(frame);
-  return serve(frame, for_all ? std::vector<Fault>() : faults_.take(functionOf(frame), now), now);
+  const ExchangeFacts exchange{ functionOf(frame), accessOf(frame) };
+  std::vector<Fault> faults = for_all ? std::vector<Fault>() : faults_.take(exchange, now);
+  return serve(frame, exchange, std::move(faults), now);
 }
 
-std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const std::vector<Fault>& faults, TimePoint now)
+std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const ExchangeFacts& exchange,
+                                            std::vector<Fault> faults, TimePoint now)
 {
   if (find(faults, FaultKind::LOST_REQUEST) != nullptr)
   {
@@ -164,6 +183,8 @@ std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const std::vecto
   }
   ++counters_.exchanges;
   counters_.exceptions += reply->exception ? 1 : 0;
+  const std::vector<Fault> of_long_ones = faults_.takeForReply(exchange, reply->bytes.size(), now);
+  faults.insert(faults.end(), of_long_ones.begin(), of_long_ones.end());
   for (const Fault& fault : faults)
   {
     spoil(*reply, fault);

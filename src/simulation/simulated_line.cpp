@@ -41,6 +41,7 @@ SimulatedLine::SimulatedLine(const LineOptions& options, TimePoint start)
 
 void SimulatedLine::attach(SimulatedDrive& drive)
 {
+  drive.setLine(options_.settings);
   drives_.push_back(&drive);
 }
 
@@ -77,6 +78,19 @@ void SimulatedLine::setEcho(bool on)
 void SimulatedLine::setSilent(bool on)
 {
   silent_ = on;
+}
+
+void SimulatedLine::setMaster(const LineSettings& settings, TimePoint now)
+{
+  advance(now);
+  options_.settings = settings;
+  character_ = settings.characterTime();
+  gap_ = settings.frameGap();
+  end_ = settings.frameEnd();
+  for (SimulatedDrive* drive : drives_)
+  {
+    drive->setLine(settings);
+  }
 }
 
 void SimulatedLine::setConnected(bool connected, TimePoint now)
@@ -474,7 +488,8 @@ void SimulatedLine::serve(const Transmission& transmission, const Bytes& frame, 
     }
     else if (drive->counters().unheard != unheard)
     {
-      remark = "lost: " + drive->name() + " does not listen";
+      remark = drive->understandsLine() ? "lost: " + drive->name() + " does not listen"
+                                        : "garbage to " + drive->name() + ": sent with " + options_.settings.text();
     }
   }
   if (!known && remark.empty())

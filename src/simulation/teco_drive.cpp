@@ -65,7 +65,7 @@ TecoDrive::TecoDrive(const DriveOptions& options)
   commission();
   motor_.setRating({ options.rated_current, options.rated_voltage, panelValue(memory_, code_.cn02) });
   motor_.setLoad(options.load);
-  serial_fits_ = serialFits();
+  setSerial(serialInEffect(), true);
   control();
 }
 
@@ -98,20 +98,20 @@ void TecoDrive::commission()
   }
 }
 
-bool TecoDrive::serialFits() const
+std::optional<LineSettings> TecoDrive::serialInEffect() const
 {
-  const LineSettings& line = options_.line;
-  const auto baud = bauds().find(line.baud_rate);
-  const bool has_parity = line.parity != Parity::NONE;
+  const auto baud = std::find_if(bauds().begin(), bauds().end(),
+                                 [this](const auto& one) { return memory_.ram(code_.sn37) == one.second; });
+  if (baud == bauds().end())
+  {
+    return std::nullopt;
+  }
+  LineSettings serial;
+  serial.baud_rate = baud->first;
+  serial.parity = static_cast<Parity>(memory_.ram(code_.sn38));
   // A character always has 11 bits: 8N2, 8E1 or 8O1 (p. 5).
-  return baud != bauds().end() && memory_.ram(code_.sn37) == baud->second &&
-         memory_.ram(code_.sn38) == static_cast<std::uint32_t>(line.parity) && line.data_bits == 8 &&
-         line.stop_bits == (has_parity ? 1 : 2);
-}
-
-bool TecoDrive::understandsLine() const
-{
-  return serial_fits_;
+  serial.stop_bits = serial.parity == Parity::NONE ? 2 : 1;
+  return serial;
 }
 
 double TecoDrive::startUpTime() const
@@ -314,7 +314,7 @@ void TecoDrive::gainPower()
 {
   powered_since_ = clock();
   setStation(static_cast<int>(memory_.ram(code_.sn36)));
-  serial_fits_ = serialFits();
+  setSerial(serialInEffect(), true);
   control();
 }
 

@@ -98,10 +98,17 @@ void ToshibaVfs15::commission(const std::string& code, double value)
 
 void ToshibaVfs15::takeEffect()
 {
-  const auto baud = BAUDS.find(options_.line.baud_rate);
-  // Stop bits: the drive takes 1 (p. 4); a second one is silence to it.
-  in_effect_.line_fits = raw(F829) == PROTOCOL_MODBUS && raw(F806) < FIRST_MASTER && raw(F800) == baud->second &&
-                         raw(F801) == static_cast<std::uint32_t>(options_.line.parity) && options_.line.data_bits == 8;
+  const auto baud =
+      std::find_if(BAUDS.begin(), BAUDS.end(), [this](const auto& one) { return raw(F800) == one.second; });
+  std::optional<LineSettings> serial;
+  if (raw(F829) == PROTOCOL_MODBUS && raw(F806) < FIRST_MASTER && baud != BAUDS.end())
+  {
+    serial = LineSettings();
+    serial->baud_rate = baud->first;
+    serial->parity = static_cast<Parity>(raw(F801));
+    // Stop bits: the drive takes 1 (p. 4); a second one is silence to it.
+  }
+  setSerial(serial);
   if (model_.blocks)
   {
     in_effect_.write_slots = { raw(F870), raw(F871) };
@@ -140,11 +147,6 @@ const Motor& ToshibaVfs15::motor() const
 bool ToshibaVfs15::tripped() const
 {
   return tripped_;
-}
-
-bool ToshibaVfs15::understandsLine() const
-{
-  return in_effect_.line_fits;
 }
 
 double ToshibaVfs15::startUpTime() const

@@ -9,10 +9,16 @@ namespace inverter_bus
 {
 namespace wire
 {
-int adapterLatencyMs(const std::string& device)
+std::optional<AdapterLatency> adapterLatency(const std::string& device, const std::string& sysfs)
 {
-  const std::string folder = ttyFolder(device);
-  return folder.empty() ? -1 : static_cast<int>(readNumber(folder + "/device/latency_timer").value_or(-1));
+  const std::string folder = ttyFolder(device, sysfs);
+  const std::string file = folder + "/device/latency_timer";
+  const auto milliseconds = folder.empty() ? std::nullopt : readNumber(file);
+  if (!milliseconds || *milliseconds < 0)
+  {
+    return std::nullopt;
+  }
+  return AdapterLatency{ std::chrono::milliseconds(*milliseconds), file };
 }
 }  // namespace wire
 }  // namespace inverter_bus

@@ -27,6 +27,11 @@ Duration Line::costUnanswered(const Request& request) const
   return timeToSend(request) + gap() + heldBack(request) + request.reply_delay + request.response_timeout;
 }
 
+std::optional<AdapterLatency> Line::adapterLatency() const
+{
+  return port_.isOpen() ? port_.adapterLatency() : std::nullopt;
+}
+
 Duration Line::patience() const
 {
   return timing_.patience(protocol_.gapCharacters());

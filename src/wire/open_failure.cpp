@@ -85,9 +85,12 @@ std::string beside(const std::string& device)
   }
   const std::string more =
       names.size() > MOST_NAMES ? " and " + std::to_string(names.size() - MOST_NAMES) + " more" : "";
-  return names.empty() ? ""
-                       : ": " + device + " is missing, " + text + more + (names.size() > 1 ? " are" : " is") +
-                             " there (a name from /dev/serial/by-id stays)";
+  if (names.empty())
+  {
+    return ": plug it in, or check its name";
+  }
+  return ": " + device + " is missing, " + text + more + (names.size() > 1 ? " are" : " is") +
+         " there (a name from /dev/serial/by-id stays)";
 }
 
 std::string whyMissing(const std::string& device)

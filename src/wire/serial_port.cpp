@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -45,8 +46,12 @@ public:
 
   OpenResult open(std::string& error) override
   {
-    close();
-    const OpenResult result = openAndLock(error);
+    if (!abandoned_ || !isTheDevice())
+    {
+      close();
+    }
+    abandoned_ = false;
+    const OpenResult result = tty_ >= 0 ? OpenResult::Opened : openAndLock(error);
     if (result != OpenResult::Opened)
     {
       close();
@@ -66,12 +71,20 @@ public:
     return OpenResult::Opened;
   }
 
+  /// The next open() renews settings, transmitter and buffers under the lock that is held: a close would let another
+  /// process in, and the open after it would move RTS.
+  void abandon() override
+  {
+    abandoned_ = tty_ >= 0;
+  }
+
   void close() override
   {
     if (tty_ < 0)
     {
       return;
     }
+    abandoned_ = false;
     transmitter_->detach();
     if (locked_)
     {
@@ -83,7 +96,7 @@ public:
 
   bool isOpen() const override
   {
-    return tty_ >= 0;
+    return tty_ >= 0 && !abandoned_;
   }
 
   std::string name() const override
@@ -93,12 +106,12 @@ public:
 
   bool send(const Bytes& frame) override
   {
-    return tty_ >= 0 && transmitter_->send(frame);
+    return isOpen() && transmitter_->send(frame);
   }
 
   ReceiveResult receive(Bytes& buffer, TimePoint deadline) override
   {
-    while (tty_ >= 0)
+    while (isOpen())
     {
       const DescriptorState state = pollDescriptor(tty_, POLLIN, deadline);
       if (state == DescriptorState::Silent)
@@ -118,6 +131,11 @@ public:
       }
     }
     return ReceiveResult::Gone;
+  }
+
+  std::optional<AdapterLatency> adapterLatency() const override
+  {
+    return wire::adapterLatency(settings_.device);
   }
 
 private:
@@ -151,6 +169,15 @@ private:
                              : "");
     }
     return locked_ ? OpenResult::Opened : OpenResult::InUse;
+  }
+
+  /// What is open is still what the name stands for: of an adapter that came back it is another device file.
+  bool isTheDevice() const
+  {
+    struct stat named = {};
+    struct stat open = {};
+    return ::stat(settings_.device.c_str(), &named) == 0 && ::fstat(tty_, &open) == 0 && named.st_dev == open.st_dev &&
+           named.st_ino == open.st_ino;
   }
 
   /// Only who holds the lock flushes: whoever else is on the port has frames on their way.
@@ -215,6 +242,7 @@ private:
   int tty_ = -1;
   bool pseudo_terminal_ = false;
   bool locked_ = false;
+  bool abandoned_ = false;
 };
 }  // namespace
 

@@ -55,7 +55,8 @@ tcflag_t controlFlags(const SerialSettings& settings)
 /// Raw: every byte value passes both ways as it is, and a read returns what is there.
 void apply(const SerialSettings& settings, termios2& attributes)
 {
-  attributes.c_iflag = IGNPAR;
+  // With parity, a byte that has it wrong is dropped: the eight-bit check of CompoWay/F would let some pass.
+  attributes.c_iflag = IGNPAR | (settings.parity == Parity::None ? 0U : static_cast<tcflag_t>(INPCK));
   attributes.c_oflag = 0;
   attributes.c_lflag = 0;
   attributes.c_cflag = controlFlags(settings);

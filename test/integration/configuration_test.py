@@ -52,6 +52,32 @@ class Configuration(unittest.TestCase):
         self.assertEntryEndsNaming(['nod', 'scan_list[1]'], nod=3)
         self.assertEndsNaming(['defaults', 'velocity'], defaults={'velocity': 3.0})
 
+    def testKeysOfAnotherPlaceOrOfALaterVersion(self):
+        self.assertEndsNaming(['command_timeout', 'scan_list or defaults'], command_timeout=1.0)
+        self.assertEndsNaming(['slow_interval', 'later version'], slow_interval=1.0)
+
+    def testWhatLiesBelowTheNameForOthersIsIgnoredWithAWarning(self):
+        process = self.bench.start_driver(rate=10, diagnostic_period=0.5, teleop={'scale': 2.0})
+        for name in ('rate', 'teleop'):
+            self.assertEqual(len([line for line in process.log().splitlines() if "'%s'" % name in line]), 1, process.log())
+        self.assertNotIn('diagnostic_period', process.log())
+        process.end()
+
+    def testNumbersThatAreTextsGetAHint(self):
+        self.assertEntryEndsNaming(['node', "'08'", 'write 8'], node='08')
+        self.assertEntryEndsNaming(['node', "'2'", 'without quotes'], node='2')
+        process = self.bench.start_driver(interval='5e-3')
+        self.assertIn('write 0.005', process.log())
+        process.end()
+
+    def testAWrongConfirmIsNamedWhereItStands(self):
+        entries = belts(2)
+        for entry in entries:
+            del entry['drive']
+        entries[1]['confirm'] = ['no_such_item']
+        self.assertEndsNaming(['~scan_list[1] (belt_2)', 'confirm', 'no_such_item'], scan_list=entries,
+                              defaults={'drive': 'omron_mx2'})
+
     def testMissingKeys(self):
         self.assertEntryEndsNaming(['name', 'scan_list[1]'], remove='name')
         self.assertEntryEndsNaming(['node', 'scan_list[1]'], remove='node')

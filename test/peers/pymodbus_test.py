@@ -1,18 +1,13 @@
 #!/usr/bin/env python3
-"""The driver on tcp:// against pymodbus, an independent Modbus server, that plays two MX2 behind a gateway.
-
-It brings a ROS master of its own, since it needs no other node than the driver.
-"""
+"""The driver on tcp:// against pymodbus, an independent Modbus server, that plays MX2 behind a gateway."""
 import os
-import shutil
-import socket
-import subprocess
 import sys
 import threading
 import unittest
 
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-sys.path.insert(0, os.path.join(ROOT, 'test', 'integration'))
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from own_master import free_port
+from remote_drives import ItsCases, RemoteDrives
 
 try:
     from pymodbus.datastore import ModbusSequentialDataBlock, ModbusServerContext, ModbusSlaveContext
@@ -29,12 +24,6 @@ RUN, DIRECTION, OPERATION, READY, RUNNING, AT_SPEED = 0x0001, 0x0002, 0x000F, 0x
 FREQUENCY, OUTPUT, TURNS = 0x0001, 0x1001, 0x1004  # F001 and d001 are two words each; between: current
 A001, A002 = 0x1201, 0x1202
 REGISTERS, COILS = 0x1300, 0x0060  # how many the server has; beyond them it answers exception 02
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 class Mx2:
@@ -60,11 +49,6 @@ class Mx2:
     def coil(self, number):
         return bool(self.coils.getValues(number - 1, 1)[0])
 
-    def frequency(self):
-        """Set frequency [0.01 Hz]."""
-        high, low = self.registers.getValues(FREQUENCY - 1, 2)
-        return high << 16 | low
-
     def follow(self):
         run = self.coil(RUN)
         for number in (OPERATION, RUNNING, AT_SPEED):
@@ -75,67 +59,32 @@ class Mx2:
         self.registers.values[OUTPUT - 1:TURNS] = [high, low, 150 if run else 0, turns]
 
 
-@unittest.skipIf(MISSING, MISSING)
-class Pymodbus(unittest.TestCase):
+class Pymodbus(RemoteDrives):
     @classmethod
-    def setUpClass(cls):
-        master_port = free_port()
-        os.environ['ROS_MASTER_URI'] = 'http://127.0.0.1:%d' % master_port
-        os.environ['ROS_IP'] = '127.0.0.1'
-        cls.master = subprocess.Popen([shutil.which('rosmaster'), '--core', '-p', str(master_port)],
-                                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(cls.end_master)
-        cls.drives = {1: Mx2(), 2: Mx2()}
-        context = ModbusServerContext(slaves={node: drive.context for node, drive in cls.drives.items()}, single=False)
+    def startServer(cls):
+        cls.drives = cls.makeDrives()
         port = free_port()
-        threading.Thread(target=StartTcpServer, kwargs={'context': context, 'address': ('127.0.0.1', port)},
+        threading.Thread(target=StartTcpServer, kwargs={'context': cls.makeContext(), 'address': ('127.0.0.1', port)},
                          daemon=True).start()
-
-        from harness import Bench, belts, init
-
-        class Remote(Bench):
-            def start_simulator(self, *_):
-                """The drives are pymodbus."""
-
-        init('pymodbus_test')
-        cls.bench = Remote(belts(2, command_timeout=0.0), port='tcp://127.0.0.1:%d' % port, response_timeout=0.5)
-        cls.addClassCleanup(cls.bench.close)
-        cls.bench.start_driver()
+        return port
 
     @classmethod
-    def end_master(cls):
-        cls.master.terminate()
-        cls.master.wait()
+    def makeDrives(cls):
+        return {1: Mx2(), 2: Mx2()}
 
-    def setUp(self):
-        self.bench.unlock()
+    @classmethod
+    def makeContext(cls):
+        return ModbusServerContext(slaves={node: drive.context for node, drive in cls.drives.items()}, single=False)
 
-    def testItMovesChangesReversesAndStops(self):
-        belt, drive = self.bench['belt_1'], self.drives[1]
-        for velocity in (15.0, 42.5, -20.0):
-            belt.send(velocity)
-            status = belt.wait(lambda s: s.running and abs(s.velocity - velocity) < 0.005, 'at %g' % velocity)
-            self.assertEqual(drive.frequency(), abs(velocity) * 100)
-            self.assertEqual(drive.coil(DIRECTION), velocity < 0)
-            self.assertTrue(drive.coil(RUN))
-            self.assertAlmostEqual(status.output_current, 1.5)
-            self.assertEqual(status.error_id, 0, status.error_text)
-        self.assertFalse(self.drives[2].coil(RUN), 'the other station is left alone')
-        answer = belt.stop()
-        self.assertTrue(answer.success, answer.message)
-        self.assertFalse(drive.coil(RUN))
-        belt.wait(lambda s: not s.running and s.locked, 'stopped')
+    def drive(self, node):
+        drive = self.drives[node]
+        high, low = drive.registers.getValues(FREQUENCY - 1, 2)
+        return {'run': drive.coil(RUN), 'reverse': drive.coil(DIRECTION), 'frequency': high << 16 | low}
 
-    def testStopOfTheBusReachesBoth(self):
-        for node, name in ((1, 'belt_1'), (2, 'belt_2')):
-            self.bench[name].send(10.0 * node)
-            self.bench[name].wait(lambda s: s.running, 'runs')
-        answer = self.bench.stop_all()
-        self.assertTrue(answer.success, answer.message)
-        for drive in self.drives.values():
-            self.assertFalse(drive.coil(RUN))
-        for name in ('belt_1', 'belt_2'):
-            self.bench[name].wait(lambda s: not s.running and not s.communication_error, 'stopped')
+
+@unittest.skipIf(MISSING, MISSING)
+class ATableOfUnits(ItsCases, Pymodbus):
+    """Silent to units that it lacks, broadcasts among them."""
 
     def testParametersAndExceptionsPass(self):
         belt = self.bench['belt_2']
@@ -148,6 +97,44 @@ class Pymodbus(unittest.TestCase):
         answer = belt.read_parameter('0xFF00')
         self.assertFalse(answer.success)
         self.assertEqual(answer.error_id, 0x8302, answer.message)
+
+
+@unittest.skipIf(MISSING, MISSING)
+class ASilentUnit(Pymodbus):
+    """A station that is in the scan list and never answers."""
+
+    silent_node = 3
+
+    def testTheOthersMoveAndStop(self):
+        absent, belt = self.bench['absent'], self.bench['belt_1']
+        absent.wait(lambda s: s.communication_error and s.error_id != 0, 'offline')
+        for velocity in (15.0, -20.0):
+            belt.send(velocity)
+            belt.wait(lambda s: s.running and abs(s.velocity - velocity) < 0.005, 'at %g' % velocity)
+        answer = belt.stop()
+        self.assertTrue(answer.success, answer.message)
+        self.assertFalse(self.runs(1))
+        answer = self.bench.stop_all()
+        self.assertFalse(answer.success, 'nobody knows of the absent one')
+        self.assertIn('absent', answer.message)
+        self.assertNotIn('belt_2', answer.message)
+        belt.fresh()
+
+
+@unittest.skipIf(MISSING, MISSING)
+class OneTableForAll(ItsCases, Pymodbus):
+    """single=True: every unit is the same drive, and a broadcast is answered."""
+
+    one_table = True
+
+    @classmethod
+    def makeDrives(cls):
+        drive = Mx2()
+        return {1: drive, 2: drive}
+
+    @classmethod
+    def makeContext(cls):
+        return ModbusServerContext(slaves=cls.drives[1].context, single=True)
 
 
 if __name__ == '__main__':

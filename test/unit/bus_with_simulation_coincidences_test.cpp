@@ -210,5 +210,71 @@ scan_list:
   EXPECT_EQ(bus.count("01 06 FA 00 C4 00"), 0U);
   EXPECT_TRUE(bus.status(0).locked);
 }
+// Seed 10002649.
+TEST(Coincidences, aStopThatNeverLeftIsNoReasonToSendRunAgain)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+retries: 3
+offline_after: 20
+scan_list:
+  - {name: belt, node: 1, drive: omron_mx2}
+)");
+  bus.settleIn();
+  // A stop is repeated at once; for a second nobody knows which of the two was answered.
+  bus.world("belt lost_request count 1");
+  EXPECT_TRUE(bus.wait(bus.stop(0)).success);
+  bus.command(0, 0.0);
+  EXPECT_EQ(bus.command(0, 20.0), 0);
+  ASSERT_TRUE(bus.runUntil(0.5, [&] { return bus.motor("belt", "run_coil") == 1.0; }));
+  bus.world("belt offline");
+  bus.clearFrames();
+  // Before the 0 goes, a loop-back is to put the line into step; it gets lost.
+  bus.command(0, 0.0);
+  ASSERT_TRUE(bus.runUntil(1.0, [&] { return bus.count("01 08") > 0; }));
+  bus.command(0, 10.0);
+  bus.world("belt online");
+  bus.run(0.4);
+  EXPECT_EQ(bus.count("01 05 00 00 00 00"), 0U);
+  EXPECT_EQ(bus.count("01 05 00 00 FF 00"), 0U) << "RUN was in force all the time";
+  EXPECT_EQ(bus.motor("belt", "reference"), 10.0);
+}
+// Seeds 10003524 and 10004636.
+TEST(Coincidences, aPowerCutWhileItIsToTurnRoundStartsNoMotor)
+{
+  for (const char* duration : { "0.05", "0.1", "0.3" })
+  {
+    VirtualBus bus(MIXER_AND_BELTS);
+    bus.settleIn();
+    bus.stream(0, 20.0, 0.1, 3.0);
+    bus.run(3.0);
+    ASSERT_EQ(bus.motor("mixer", "run_command"), 1.0);
+    bus.clearFrames();
+    bus.stream(0, -20.0, 0.1, 3.0);
+    // The set-point is the same: the first frame is the RUN that turns it round.
+    bus.world(std::string("mixer power_cycle ") + duration);
+    bus.run(3.0);
+    EXPECT_GE(bus.count("01 10 00 00 00 01 02 00 02"), 1U);
+    EXPECT_EQ(bus.motor("mixer", "run_command"), 0.0) << duration;
+    EXPECT_EQ(bus.motor("mixer", "frequency"), 0.0) << duration;
+    EXPECT_TRUE(bus.status(0).locked) << duration;
+  }
+}
+
+TEST(Coincidences, aLostReplyToARunThatTurnsTheMotorRoundIsRepeatedAsEver)
+{
+  for (const char* harm : { "lost_reply", "lost_request" })
+  {
+    VirtualBus bus(MIXER_AND_BELTS);
+    bus.settleIn();
+    bus.stream(0, 20.0, 0.1, 3.0);
+    bus.run(3.0);
+    bus.stream(0, -20.0, 0.1, 3.0);
+    bus.world(std::string("mixer ") + harm + " count 1");
+    bus.run(2.9);
+    EXPECT_EQ(bus.motor("mixer", "target"), -20.0) << harm;
+    EXPECT_FALSE(bus.status(0).locked) << harm;
+  }
+}
 }  // namespace
 }  // namespace inverter_bus

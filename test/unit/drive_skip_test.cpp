@@ -83,6 +83,18 @@ TEST(DriveSkip, WhatIsUnconfirmedInItIsNotReported)
   EXPECT_EQ("", shipped("hitachi_wj200", skipping({ "store_busy", "warning_code", "trip_memory" })).unconfirmedText());
 }
 
+TEST(DriveSkip, DiagnosticsSayWhatCanBeLeftOut)
+{
+  EXPECT_THAT(shipped("toshiba_vfs15").unconfirmedText(), HasSubstr("skip: [dc_voltage]"));
+  EXPECT_THAT(shipped("omron_rx").unconfirmedText(),
+              HasSubstr("skip: [dc_voltage, output_current, store_busy, temperature, trip_memory]"));
+  ProfileChanges changes = skipping({ "dc_voltage", "temperature" });
+  changes.confirm = { "current_scale" };
+  EXPECT_THAT(shipped("omron_rx", changes).unconfirmedText(), HasSubstr("skip: [store_busy]"));
+  // Whoever leaves out what it names is done, as long as no command waits.
+  EXPECT_THAT(shipped("teco_7200ma").unconfirmedText(), Not(HasSubstr("faulted")));
+}
+
 TEST(DriveSkip, AMarkThatSomethingElseHasTooStaysReported)
 {
   // trip_codes marks fault_code too, which can't be left out.

@@ -22,7 +22,7 @@ protected:
   {
     config_.name = "belt";
     config_.node = 7;
-    config_.drive = "test_drive";
+    config_.drive = "/home/user/test_drive.yaml";
     status_.has_stamp = true;
     status_.stamp = moment_.steady;
   }
@@ -30,6 +30,7 @@ protected:
   static drive::Drive drive()
   {
     drive::Profile profile;
+    profile.name = "test_drive";
     profile.faults[9] = "undervoltage";
     return drive::Drive(profile);
   }
@@ -92,6 +93,15 @@ TEST_F(StatusConversionTest, everyFieldHasItsBit)
   EXPECT_DOUBLE_EQ(325.0, message.dc_voltage);
   EXPECT_DOUBLE_EQ(-12.0, message.torque);
   EXPECT_DOUBLE_EQ(41.0, message.temperature);
+}
+
+TEST_F(StatusConversionTest, aStateThatTheProfileDoesNotKnowIsNamedAndNoTripIsClaimed)
+{
+  status_.monitor.unknown_trip = 7;
+  const InverterStatus message = convert();
+  EXPECT_FALSE(message.faulted);
+  EXPECT_EQ(message.known & InverterStatus::KNOWN_FAULTED, 0U);
+  EXPECT_EQ(message.fault_text.find("unknown state 7"), 0U) << message.fault_text;
 }
 
 TEST_F(StatusConversionTest, aFlagThatIsFalseIsKnown)

@@ -3,7 +3,7 @@
 
 // Faults that are injected by command, and the command grammar.
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "simulation_test_bus.h"
 
@@ -106,6 +106,40 @@ TEST(SimulatedFaults, functionAndDurationChooseTheExchange)
   EXPECT_EQ(GOOD, bus.ask(READ));
 }
 
+TEST(SimulatedFaults, onlyWritesOrOnlyReadsGetLost)
+{
+  TestBus bus(oneMx2());
+  bus.command("m lost_request writes count 0");
+  EXPECT_EQ("", bus.ask(RUN));
+  EXPECT_EQ("0", bus.shown("m", "run_coil"));
+  EXPECT_EQ(GOOD, bus.ask(READ));
+  EXPECT_EQ("01 08 00 00 12 34", bus.ask("01 08 00 00 12 34"));
+  bus.command("m clear");
+  bus.command("m lost_reply reads for 1");
+  EXPECT_EQ("", bus.ask(READ));
+  EXPECT_EQ(RUN, bus.ask(RUN));
+  EXPECT_EQ("1", bus.shown("m", "run_coil"));
+  EXPECT_EQ("01 08 00 00 12 34", bus.ask("01 08 00 00 12 34"));
+}
+
+TEST(SimulatedFaults, onlyLongRepliesAreSpoiled)
+{
+  TestBus bus(oneMx2());
+  const std::string two_words = "01 03 10 00 00 02";
+  const std::string good = bus.ask(two_words);
+  // Address, function, count, four or eight bytes, check sum: 9 and 13 bytes.
+  bus.command("m damaged count 2 longer 12");
+  EXPECT_EQ(good, bus.ask(two_words));
+  EXPECT_NE(GOOD, bus.ask(READ));
+  EXPECT_EQ(good, bus.ask(two_words));
+  EXPECT_NE(GOOD, bus.ask(READ));
+  EXPECT_EQ(GOOD, bus.ask(READ));
+  bus.command("m lost_reply for 1 longer 12");
+  EXPECT_EQ(good, bus.ask(two_words));
+  EXPECT_EQ("", bus.ask(READ));
+  EXPECT_THAT(bus.command("m lost_request longer 12"), ::testing::HasSubstr("longer BYTES is for faults of a reply"));
+}
+
 TEST(SimulatedFaults, broadcastUsesNoFaultUp)
 {
   TestBus bus(oneMx2());
@@ -175,7 +209,8 @@ TEST(SimulatedCommands, errorsSayWhatIsAllowed)
   EXPECT_EQ("error: unknown target x (allowed: help list bus m)", bus.command("x show"));
   EXPECT_EQ("error: echo maybe (allowed: on, off)", bus.command("bus echo maybe"));
   EXPECT_EQ("error: delay x (allowed: 0 to 3600)", bus.command("m late x"));
-  EXPECT_EQ("error: unexpected word often (allowed: count N, for S, function F)", bus.command("m late 1 often"));
+  EXPECT_EQ("error: unexpected word often (allowed: count N, for S, function F, writes, reads, longer BYTES)",
+            bus.command("m late 1 often"));
   EXPECT_EQ("error: unexpected word now (allowed: nothing more here; see help)", bus.command("m trip 12 now"));
   EXPECT_EQ("error: omron_mx2 has no parameter Z999 (see help)", bus.command("m get Z999"));
   EXPECT_EQ("error: value out of range (0.00-99.99)", bus.command("m set C077 100"));

@@ -1043,8 +1043,9 @@ TEST(ToshibaHand, busyRefusesWritesAndAnswersReads)
 
 TEST(ToshibaHand, motorIsTheSameInOneStepAndInMany)
 {
-  TestBus big(vfs15("ACC: 5.0"));
+  TestBus big(vfs15("F102: 2.5"));
   TestBus small(vfs15("F102: 2.5"));
+  big.command("m set ACC 5");
   small.command("m set ACC 5");
   for (TestBus* bus : { &big, &small })
   {

@@ -163,8 +163,9 @@ public:
   /// What makes the inverter's lamp yellow or red; empty: it is green.
   std::string findings(std::size_t index)
   {
+    const bus::InverterReport report = coordinator_.report(clock_.now()).inverters.at(index);
     std::string text;
-    for (const bus::Finding& finding : coordinator_.report(clock_.now()).inverters.at(index).findings)
+    for (const bus::Finding& finding : report.findings)
     {
       text += finding.text + "\n";
     }
@@ -282,6 +283,16 @@ public:
 
   std::vector<std::string> logTexts() const
   {
+    std::vector<std::string> texts;
+    for (const bus::Finding& finding : log_)
+    {
+      texts.push_back(finding.text);
+    }
+    return texts;
+  }
+
+  const std::vector<bus::Finding>& log() const
+  {
     return log_;
   }
 
@@ -366,7 +377,7 @@ private:
     }
     for (const bus::Finding& finding : outputs.log)
     {
-      log_.push_back(finding.text);
+      log_.push_back(finding);
     }
     for (auto& answer : coordinator_.takeAnswers())
     {
@@ -385,7 +396,7 @@ private:
   bus::BusLoop loop_;
   std::map<std::size_t, bus::InverterStatus> statuses_;
   std::vector<simulation::FrameRecord> frames_;
-  std::vector<std::string> log_;
+  std::vector<bus::Finding> log_;
   std::vector<bus::BusStatus> bus_statuses_;
 };
 }  // namespace inverter_bus

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
+
 #include "line_fixture.h"
 
 namespace inverter_bus
@@ -25,6 +27,34 @@ TEST_F(LineLateReply, aLostRequestMayNotBeRepeatedForASecond)
   EXPECT_EQ(clock_.now(), line_.mayAskAt(requestOf(withCrc(OTHER_READ))));
   clock_.advance(milliseconds(1000));
   EXPECT_TRUE(mayAsk(READ));
+}
+
+/// Time goes on between any two looks at it, as it does outside of tests.
+class RunningClock : public Clock
+{
+public:
+  TimePoint now() const override
+  {
+    time_ += std::chrono::nanoseconds(1);
+    return time_;
+  }
+  void sleepUntil(TimePoint time) override
+  {
+    time_ = std::max(time_, time);
+  }
+
+private:
+  mutable TimePoint time_{ std::chrono::hours(1) };
+};
+
+TEST_F(LineLateReply, nothingIsBarredByTheTimeThatTheQuestionTakes)
+{
+  RunningClock clock;
+  const Line line(port_, *protocol_, clock, LineTiming(19200, 10));
+  EXPECT_TRUE(line.mayAsk(requestOf(withCrc(READ))));
+  const std::unique_ptr<Protocol> tcp = makeModbusTcp();
+  const Line gateway(port_, *tcp, clock, LineTiming(19200, 10));
+  EXPECT_TRUE(gateway.mayAsk(requestOf(withCrc(READ))));
 }
 
 TEST_F(LineLateReply, aDamagedReplyBarsToo)

@@ -64,7 +64,7 @@ TEST_F(OpenFailure, anAdapterMayHaveComeBackUnderTheOtherDriversName)
 {
   add("ttyACM0");
   EXPECT_THAT(missing("ttyUSB0"), HasSubstr("ttyACM0 is there"));
-  EXPECT_THAT(missing("ttyS4"), EndsWith("No such file or directory"));
+  EXPECT_THAT(missing("ttyS4"), EndsWith("plug it in, or check its name"));
 }
 
 TEST_F(OpenFailure, manyNamesMakeNoLongLine)
@@ -93,11 +93,11 @@ TEST_F(OpenFailure, aLinkToNothingIsTold)
 TEST_F(OpenFailure, namesWithoutNumberOrFolderAreTakenAsTheyAre)
 {
   add("rs486");
-  EXPECT_THAT(missing("rs"), EndsWith("No such file or directory"));
-  EXPECT_THAT(openFailure("", ENOENT), EndsWith("No such file or directory"));
-  EXPECT_THAT(openFailure("no_such_port", ENOENT), EndsWith("No such file or directory"));
-  EXPECT_THAT(openFailure("/no/such/folder7", ENOENT), EndsWith("No such file or directory"));
-  EXPECT_THAT(openFailure("7", ENOENT), EndsWith("No such file or directory"));
+  EXPECT_THAT(missing("rs"), EndsWith("plug it in, or check its name"));
+  EXPECT_THAT(openFailure("", ENOENT), EndsWith("plug it in, or check its name"));
+  EXPECT_THAT(openFailure("no_such_port", ENOENT), EndsWith("plug it in, or check its name"));
+  EXPECT_THAT(openFailure("/no/such/folder7", ENOENT), EndsWith("plug it in, or check its name"));
+  EXPECT_THAT(openFailure("7", ENOENT), EndsWith("plug it in, or check its name"));
 }
 
 TEST_F(OpenFailure, permissionDeniedNamesTheGroupOfTheDeviceFile)

@@ -263,6 +263,49 @@ TEST_F(RealPort, isFreeAgainForItsOwnNextOpen)
   EXPECT_EQ(0, driver.exclusive);
 }
 
+TEST_F(RealPort, isRenewedUnderItsLock)
+{
+  const auto owner = port();
+  ASSERT_EQ(OpenResult::Opened, open(*owner)) << error_;
+  driver.attributes.c_cflag |= CMSPAR;
+  driver.flushes = 0;
+  owner->abandon();
+  EXPECT_FALSE(owner->isOpen());
+  EXPECT_FALSE(owner->send(withCrc("01 03 00 00 00 01")));
+  EXPECT_EQ(OpenResult::InUse, open()) << "nobody gets in between";
+  ASSERT_EQ(OpenResult::Opened, open(*owner)) << error_;
+  EXPECT_TRUE(owner->isOpen());
+  EXPECT_EQ(0U, driver.attributes.c_cflag & CMSPAR);
+  EXPECT_EQ(1, driver.flushes);
+  EXPECT_TRUE(owner->send(withCrc("01 03 00 00 00 01")));
+}
+
+TEST_F(RealPort, isGivenBackByACloseAfterAll)
+{
+  const auto owner = port();
+  ASSERT_EQ(OpenResult::Opened, open(*owner)) << error_;
+  owner->abandon();
+  owner->close();
+  EXPECT_EQ(0, driver.exclusive);
+  EXPECT_EQ(OpenResult::Opened, open()) << error_;
+}
+
+TEST_F(RealPort, isOpenedAnewWhereItsNameMeansAnotherOneNow)
+{
+  const std::string device = settings_.device;
+  const std::string link = testing::TempDir() + "real_port_link_" + std::to_string(::getpid());
+  ::unlink(link.c_str());
+  ASSERT_EQ(0, ::symlink(device.c_str(), link.c_str()));
+  settings_.device = link;
+  const auto owner = port();
+  ASSERT_EQ(OpenResult::Opened, open(*owner)) << error_;
+  ASSERT_EQ(0, ::unlink(link.c_str()));
+  owner->abandon();
+  EXPECT_EQ(OpenResult::NotThere, open(*owner));
+  settings_.device = device;
+  EXPECT_EQ(OpenResult::Opened, open()) << "the old one was given back: " << error_;
+}
+
 TEST_F(RealPort, losesWhatAnotherProgramLeft)
 {
   driver.attributes.c_cflag = CMSPAR | PARENB | CRTSCTS | HUPCL | CSTOPB | CS5 | (B300 << IBSHIFT);
@@ -276,7 +319,7 @@ TEST_F(RealPort, losesWhatAnotherProgramLeft)
   settings_.parity = Parity::Even;
   ASSERT_EQ(OpenResult::Opened, open()) << error_;
   EXPECT_EQ(tcflag_t{ CREAD | CLOCAL | CS8 | PARENB | B19200 }, driver.attributes.c_cflag);
-  EXPECT_EQ(tcflag_t{ IGNPAR }, driver.attributes.c_iflag);
+  EXPECT_EQ(tcflag_t{ IGNPAR | INPCK }, driver.attributes.c_iflag);
   EXPECT_EQ(0U, driver.attributes.c_oflag);
   EXPECT_EQ(0U, driver.attributes.c_lflag);
   EXPECT_EQ(1, driver.attributes.c_cc[VMIN]);
@@ -285,6 +328,13 @@ TEST_F(RealPort, losesWhatAnotherProgramLeft)
   EXPECT_EQ(19200U, driver.attributes.c_ospeed);
   EXPECT_FALSE(driver.breaking);
   EXPECT_EQ(N_TTY, driver.discipline);
+}
+
+TEST_F(RealPort, checksNoParityWhereThereIsNone)
+{
+  driver.attributes.c_iflag = INPCK;
+  ASSERT_EQ(OpenResult::Opened, open()) << error_;
+  EXPECT_EQ(tcflag_t{ IGNPAR }, driver.attributes.c_iflag);
 }
 
 struct Quirk

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <termios.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -336,7 +338,8 @@ TEST_F(SerialPortTest, aMissingDeviceIsNotThere)
   settings_.device = "/dev/inverter_bus_no_such_port";
   const auto port = makeSerialPort(settings_);
   EXPECT_EQ(OpenResult::NotThere, open(*port));
-  EXPECT_EQ("cannot open /dev/inverter_bus_no_such_port: No such file or directory", error_);
+  EXPECT_EQ("cannot open /dev/inverter_bus_no_such_port: No such file or directory: plug it in, or check its name",
+            error_);
   EXPECT_FALSE(port->isOpen());
   EXPECT_EQ(settings_.device, port->name());
 }
@@ -482,9 +485,30 @@ TEST(SerialSettings, aCharacterHasStartDataParityAndStopBits)
 
 TEST(AdapterLatency, isUnknownWithoutAnAdapter)
 {
-  EXPECT_EQ(-1, adapterLatencyMs("/dev/null"));
-  EXPECT_EQ(-1, adapterLatencyMs("/dev/inverter_bus_no_such_port"));
-  EXPECT_EQ(-1, adapterLatencyMs(""));
+  EXPECT_FALSE(adapterLatency("/dev/null"));
+  EXPECT_FALSE(adapterLatency("/dev/inverter_bus_no_such_port"));
+  EXPECT_FALSE(adapterLatency(""));
+}
+
+TEST(AdapterLatency, isThatOfTheLatencyTimer)
+{
+  std::string sysfs = testing::TempDir() + "adapter_latency_XXXXXX";
+  ASSERT_NE(nullptr, ::mkdtemp(&sysfs[0]));
+  std::string folder = sysfs;
+  // /dev/null stands for the device.
+  for (const char* part : { "/class", "/tty", "/null", "/device" })
+  {
+    folder += part;
+    ASSERT_EQ(0, ::mkdir(folder.c_str(), 0755));
+  }
+  EXPECT_FALSE(adapterLatency("/dev/null", sysfs));
+  std::ofstream(folder + "/latency_timer") << "16\n";
+  const auto latency = adapterLatency("/dev/null", sysfs);
+  ASSERT_TRUE(latency);
+  EXPECT_EQ(milliseconds(16), latency->latency);
+  EXPECT_EQ(folder + "/latency_timer", latency->file);
+  std::ofstream(folder + "/latency_timer") << "nonsense\n";
+  EXPECT_FALSE(adapterLatency("/dev/null", sysfs));
 }
 }  // namespace
 }  // namespace wire

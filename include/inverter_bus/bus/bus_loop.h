@@ -31,12 +31,14 @@ private:
   TimePoint noteOpening(wire::OpenResult result, const std::string& error);
   bool reopen();
   void judgePatience(TimePoint now, bool in_use);
+  void lookAtAdapter();
 
   Coordinator& coordinator_;
   wire::Line& line_;
   wire::Clock& clock_;
   std::mutex& mutex_;
   TimePoint next_open_;
+  TimePoint next_look_;
   /// An attempt to open the port is under way.
   bool opening_ = false;
   std::optional<TimePoint> in_use_since_;

@@ -4,12 +4,12 @@
 #define INVERTER_BUS_BUS_CONFIGURATION_H
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "inverter_bus/config/value.h"
 #include "inverter_bus/drive/drive.h"
 #include "inverter_bus/wire/line.h"
 #include "inverter_bus/wire/serial_port.h"
@@ -20,28 +20,10 @@ namespace inverter_bus
 namespace bus
 {
 /// A configuration value as it came from the parameter server or from a YAML file, before anybody judged it.
-struct Value
-{
-  enum class Type
-  {
-    None,
-    Boolean,
-    Integer,
-    Number,
-    Text,
-    List,
-    Map
-  };
-  Type type = Type::None;
-  bool boolean = false;
-  std::int64_t integer = 0;
-  double number = 0.0;
-  std::string text;
-  std::vector<Value> list;
-  std::map<std::string, Value> map;
-};
+using config::Value;
 
-/// A scan list file as a tree. \throws drive::ConfigurationError with file and line.
+/// A scan list file as roslaunch would put it onto the parameter server (config/yaml.h).
+/// \throws drive::ConfigurationError one line: file, line, key, what is wrong, what is allowed
 Value readYamlFile(const std::string& path);
 
 /// What happens to a velocity beyond the maximum (contract, 8.5).
@@ -121,6 +103,8 @@ struct Configuration
 {
   BusConfig bus;
   std::vector<drive::Drive> drives;
+  /// What was taken and should be mended: one line each, for the log and for whoever checks a file.
+  std::vector<std::string> warnings;
 };
 
 /// Judges the node's parameters (contract, section 2). \p place names the source in messages ("~" for ROS parameters or a

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/adapter_watch.h"
 #include "inverter_bus/bus/budget.h"
 #include "inverter_bus/bus/bus.h"
 #include "inverter_bus/bus/connection_watch.h"
@@ -81,6 +82,9 @@ public:
   void lateReply(TimePoint now, const wire::LateReply& late);
   /// What the line has counted so far; kept as a copy, since others ask for it while the line is in use.
   void noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found);
+
+  /// What the open port tells of its adapter; nothing: its driver does not tell.
+  void noteAdapter(const std::optional<wire::AdapterLatency>& latency);
 
   void portOpened(TimePoint now);
   /// \p in_use: another process holds it.
@@ -268,12 +272,15 @@ private:
   void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id);
-  void wentOffline(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void wentOffline(TimePoint now, Inverter& inverter);
   void judgeRefresh(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);
   void publish(TimePoint now, const Inverter& inverter);
   BusStatus busStatus(TimePoint now) const;
-  void log(Level level, const std::string& text);
+  /// Subject of the lines that tell the state of the port; no inverter's name has a space.
+  static constexpr const char* PORT = "the port";
+  /// \p subject see Finding.
+  void log(Level level, const std::string& text, const std::string& subject = "");
 
   const Configuration& configuration_;
   const wire::Line& line_;
@@ -306,6 +313,7 @@ private:
   bool port_failing_ = false;
   bool port_complained_ = false;
   std::string port_error_;
+  AdapterWatch adapter_;
   std::uint64_t reconnects_ = 0;
   bool ever_opened_ = false;
   Duration stop_latency_max_{ 0 };

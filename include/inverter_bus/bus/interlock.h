@@ -75,6 +75,8 @@ public:
   /// What status shows: true while nobody has returned to neutral and a stream goes on being refused, or the lock's reason
   /// is not over. False, a publisher whose stream has never paused is still refused: the lock counts per publisher.
   bool locked(TimePoint now) const;
+  /// Silence that unlocks for somebody who was never heard; whoever sends slowly needs twice his spacing.
+  Duration silenceNeeded() const;
   bool stopPending() const;
   bool isOffline() const;
   bool isFaulted() const;

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/bus/command_error.h"
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
+#include "inverter_bus/bus/link_record.h"
 #include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
@@ -97,6 +99,8 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  /// What came since the last complete status.
+  LinkRecord record;
   LostWrites lost_writes;
 
   // --- link -------------------------------------------------------------------------------------------------------
@@ -146,6 +150,8 @@ public:
   bool mayRepeatWords(TimePoint now) const;
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
+  /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+  bool mustBeSeenRunning() const;
   /// Why the drive gets no command but a stop; empty: it does.
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.
@@ -157,6 +163,10 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
+  /// What the log says when it answers (again), and what is to be done before it moves.
+  std::string onlineText() const;
+  /// What the log says when it goes offline.
+  std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
   /// After a complete refresh.
@@ -169,6 +179,8 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
+  /// As a member of a group that was refused for the sake of another one.
+  void refuseForOther(std::uint16_t error_id, const std::string& reasons);
   void acceptCommand();
   /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
   /// would hide it.
@@ -191,7 +203,6 @@ public:
   unsigned probes = 0;
 
 private:
-  void showError(InverterStatus& status) const;
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
@@ -201,7 +212,12 @@ private:
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void compareMovement(TimePoint now, const drive::Monitor& monitor);
-  std::vector<Finding> errors() const;
+  std::vector<Finding> errors(TimePoint now) const;
+  std::string exchangeText() const;
+  std::string offlineText(TimePoint now) const;
+  std::string silenceText() const;
+  Obstacles obstacles() const;
+  void showError(TimePoint now, InverterStatus& status) const;
 
   int offline_after_;
   /// Since its last status words; counted up to offline_after_.
@@ -214,8 +230,7 @@ private:
   std::uint16_t exchange_error_ = 0;
   /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
   std::uint8_t gateway_code_ = 0;
-  std::uint16_t command_error_ = 0;
-  std::string command_error_text_;
+  CommandError command_error_;
   std::uint16_t velocity_error_ = 0;
   std::string velocity_error_text_;
   TimePoint last_reply_;

@@ -82,7 +82,7 @@ public:
   void sent(const Write& write);
   void confirmed(const Write& write, TimePoint now);
   /// No valid answer: nobody knows whether the drive took it.
-  void doubtful(const Write& write);
+  void doubtful(const Write& write, TimePoint now = TimePoint());
   /// The command failed: nothing more is sent for it. A motor that runs goes on as it was.
   void giveUp();
 
@@ -98,6 +98,10 @@ public:
   bool runPossible() const;
   /// RUN was acknowledged and is in force.
   bool runConfirmed() const;
+  /// When the frame that was to turn a running motor round got lost; nothing: none did, or the motor was seen running
+  /// since. Until then RUN is not sent again: a drive that was switched off meanwhile would start by it.
+  std::optional<TimePoint> turnLostAt() const;
+  void seenRunning();
   /// When RUN was last changed by us; evidence from requests before it says nothing about it.
   TimePoint runChangedAt() const;
   /// A command of 0 was acknowledged: the next status decides whether RUN is off.
@@ -127,6 +131,7 @@ private:
   bool run_confirmed_ = false;
   bool zero_unverified_ = false;
   TimePoint run_changed_at_;
+  std::optional<TimePoint> turn_lost_at_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

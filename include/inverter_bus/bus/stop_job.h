@@ -31,7 +31,7 @@ public:
   bool written() const;
   /// Somebody asks for it again and again: it was confirmed several times in a row, each time shortly before the next one.
   bool repeats() const;
-  /// The inverter is out of sight: whatever was confirmed may be over.
+  /// The inverter is out of sight, or RUN was sent: whatever was confirmed may be over.
   void forgetConfirmation();
   /// When the last frame of any stop of this inverter left; the epoch: none has.
   TimePoint lastSentAt() const;

@@ -135,6 +135,9 @@ struct Finding
 {
   Level level = Level::Ok;
   std::string text;
+  /// Lines of the log that tell the state of the same thing (the port, an inverter's link) have the same subject: a new
+  /// one replaces the one before it. Empty: a line of its own.
+  std::string subject = {};
 };
 
 /// What /diagnostics shows of an inverter.

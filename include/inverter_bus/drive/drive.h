@@ -208,6 +208,7 @@ public:
 
 private:
   std::string adviceFor(const std::set<std::string>& marks) const;
+  std::string skippableUnconfirmed() const;
 
   Profile profile_;
   std::vector<ReadBlock> fast_blocks_;

@@ -26,15 +26,6 @@ public:
 /// \p text as one line of printable characters and of bearable length, whatever a YAML text contains; for messages.
 std::string oneLine(const std::string& text);
 
-/// How deep flow collections, blocks and lists of \p yaml are nested at most, without parsing it: a parser that recurses
-/// must not be fed more than its stack holds.
-unsigned yamlDepth(const std::string& yaml);
-
-/// More text than any profile or scan list has.
-constexpr std::size_t LARGEST_YAML = 1048576;
-/// Deeper than any profile or scan list.
-constexpr unsigned DEEPEST_YAML = 100;
-
 /// What an address counts.
 enum class Space
 {
@@ -354,6 +345,8 @@ struct ProfileChanges
   std::vector<std::string> confirm;
   /// Names of skippableFields() that are left out: not read, not reported, nor what is unconfirmed in them.
   std::vector<std::string> skip;
+  /// Where \ref confirm stands, for messages; empty: where the overrides do.
+  std::string confirm_place;
 };
 
 /// What `skip` may leave out: fields of the status, `store_busy`, and `trip_memory` (the quantities beside the trip codes).
@@ -365,6 +358,10 @@ const std::set<std::string>& protectedFields();
 /// \throws ConfigurationError "file:line: key ...: what is wrong, what is allowed"
 Profile loadProfile(const std::string& name_or_path, const std::string& directory,
                     const ProfileChanges& changes = ProfileChanges());
+
+/// The folder with the profiles as shipped: environment variable INVERTER_BUS_DRIVES, or where the package is installed, or its
+/// source.
+std::string shippedProfileDirectory();
 
 /// Names of the profiles in \p directory, sorted; empty also if it can't be read.
 std::vector<std::string> knownProfiles(const std::string& directory);

@@ -14,6 +14,7 @@
 #include "inverter_bus/ros/commands.h"
 #include "inverter_bus/ros/master_watch.h"
 #include "inverter_bus/ros/steady_event.h"
+#include "inverter_bus/ros/trace_files.h"
 
 namespace inverter_bus
 {
@@ -23,8 +24,8 @@ namespace ros_node
 class Diagnostics
 {
 public:
-  Diagnostics(const bus::BusConfig& config, const bus::Bus& bus, const Commands& commands,
-              const MasterWatch& master_watch);
+  Diagnostics(const bus::Configuration& configuration, const bus::Bus& bus, const Commands& commands,
+              const MasterWatch& master_watch, const TraceFiles& traces);
   /// As stop().
   ~Diagnostics();
 
@@ -39,9 +40,11 @@ private:
   void showBus(diagnostic_updater::DiagnosticStatusWrapper& entry) const;
 
   const bus::BusConfig config_;
+  const std::vector<drive::Drive> drives_;
   const bus::Bus& bus_;
   const Commands& commands_;
   const MasterWatch& master_watch_;
+  const TraceFiles& traces_;
   bus::Report report_;  ///< of this round; diagnostics thread only
   diagnostic_updater::Updater updater_;
   SteadyEvent stopping_;

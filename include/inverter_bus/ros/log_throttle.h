@@ -4,29 +4,57 @@
 #define INVERTER_BUS_ROS_LOG_THROTTLE_H
 
 #include <cstddef>
+#include <deque>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "inverter_bus/bus/types.h"
 #include "inverter_bus/wire/clock.h"
 
 namespace inverter_bus
 {
 namespace ros_node
 {
-/// Keeps a fault that repeats itself from flooding the log: the same text at most once per 5 s, and at most 50 lines of any
-/// text in 5 s. One thread only.
+/// Keeps a fault that repeats itself from flooding the log: at most 50 lines in 5 s, the same text at most once in 5 s. Of
+/// one subject (bus::Finding) at most 4 lines in 5 s; its newest one is kept back for as long as that takes and then
+/// logged if the log ends with another state, so that the last word is right. One thread only; times must not go back.
 class LogThrottle
 {
 public:
-  /// True if \p text may be logged at \p now. Times must not go back.
-  bool admit(const std::string& text, TimePoint now);
-  /// Lines that were kept back since the last call.
+  /// True if \p finding may be logged at \p now.
+  bool admit(const bus::Finding& finding, TimePoint now);
+  /// When takeDue() has something to give.
+  std::optional<TimePoint> nextDue() const;
+  /// Lines that were kept back and may be logged at \p now.
+  std::vector<bus::Finding> takeDue(TimePoint now);
+  /// All of them, for the end.
+  std::vector<bus::Finding> takeHeld();
+  /// Lines that were left out since the last call.
   std::size_t takeSuppressed();
 
 private:
-  void forgetBefore(TimePoint time);
+  struct Line
+  {
+    std::string text;
+    std::string subject;
+    TimePoint time;
+  };
 
-  std::map<std::string, TimePoint> logged_;
+  void forgetBefore(TimePoint time);
+  bool wasLogged(const std::string& text) const;
+  bool isNews(const bus::Finding& finding) const;
+  TimePoint roomFor(const std::string& subject) const;
+  void note(const bus::Finding& finding, TimePoint now);
+  void drop(const std::string& subject);
+
+  /// Of the last 5 s.
+  std::deque<Line> logged_;
+  /// By subject: the text that the log ends with, however long ago.
+  std::map<std::string, std::string> last_;
+  /// By subject: the newest line, for which there was no room.
+  std::map<std::string, bus::Finding> held_;
   std::size_t suppressed_ = 0;
 };
 }  // namespace ros_node

@@ -3,8 +3,6 @@
 #ifndef INVERTER_BUS_ROS_PARAMETERS_H
 #define INVERTER_BUS_ROS_PARAMETERS_H
 
-#include <string>
-
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include "inverter_bus/bus/configuration.h"
@@ -18,10 +16,6 @@ bus::Value toValue(XmlRpc::XmlRpcValue value);
 
 /// The node's private parameters as a map; an empty map if there are none.
 bus::Value readParameters();
-
-/// The folder with the drives' profiles: environment variable INVERTER_BUS_DRIVES, or where the package is installed, or its
-/// source.
-std::string profileDirectory();
 }  // namespace ros_node
 }  // namespace inverter_bus
 

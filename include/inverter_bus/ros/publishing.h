@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <variant>
@@ -51,10 +52,13 @@ private:
 
   void add(std::deque<Item>& queue, Item item);
   void work();
+  void waitForWork(std::unique_lock<std::mutex>& lock);
+  std::optional<Item> takeNext();
   void handle(const Item& item);
   void publish(const bus::InverterStatus& status);
   void publish(const bus::BusStatus& status);
   void publish(const bus::Finding& finding);
+  void write(const bus::Finding& finding);
   const Moment& momentOf(const bus::InverterStatus& status);
 
   const bus::BusConfig config_;

@@ -16,19 +16,26 @@ namespace inverter_bus
 {
 namespace ros_node
 {
-/// Path without a leading `~`.
+/// Path without a leading `~`; `~/.ros` is ROS_HOME where that is set, as for ROS itself.
 std::string expandHome(const std::string& path);
 
-/// Writes the flight recorder's content into files, away from the bus thread. Of one node the newest 50 are kept.
+/// Writes the flight recorder's content into files, away from the bus thread. Of one node the newest 50 that were written by
+/// themselves and the newest 50 that somebody asked for are kept. Each is named in the log.
 class TraceFiles
 {
 public:
-  using Warn = std::function<void(const std::string&)>;
+  using Log = std::function<void(bus::Level, const std::string&)>;
+
+  struct File
+  {
+    std::string path;
+    std::string reason;
+  };
 
   /// \param directory as configured; made when the first file is written
   /// \param node_name in the files' names, so that several buses can share a directory
-  /// \param warn gets one sentence when a file could not be written; any thread
-  TraceFiles(const std::string& directory, const std::string& node_name, Warn warn);
+  /// \param log gets one line for each file, or one that says why there is none; any thread
+  TraceFiles(const std::string& directory, const std::string& node_name, Log log);
   /// As stop().
   ~TraceFiles();
 
@@ -38,29 +45,37 @@ public:
   /// Writes \p dump soon, but at most one file per 10 s; does not block. Any thread.
   void writeSoon(bus::TraceDump dump);
 
-  /// Writes now. Any thread.
+  /// Writes what \p record gives now because somebody asks for it, but at most one file per second: else the last one that
+  /// was asked for. Any thread.
   /// \return the file's path; empty: it failed, and \p error says why
-  std::string write(const bus::TraceDump& dump, std::string& error);
+  std::string writeAsked(const std::function<bus::TraceDump()>& record, TimePoint now, std::string& error);
+
+  /// The file that was written last, if any. Any thread.
+  std::optional<File> last() const;
 
   /// Writes what waits and ends the thread: nothing is written soon any more.
   void stop();
 
 private:
   void work();
-  std::string newPath(const std::string& reason);
-  void removeOldFiles(const std::string& newest) const;
+  std::string write(const bus::TraceDump& dump, const std::string& kind, std::string& error);
+  std::string newPath(const std::string& kind, const std::string& reason);
+  void removeOldFiles(const std::string& newest, const std::string& kind) const;
 
   const std::string directory_;
   const std::string prefix_;
-  const Warn warn_;
+  const Log log_;
 
   std::mutex writing_;  ///< one file at a time
   unsigned number_ = 0;
+  std::string last_asked_;
+  std::optional<TimePoint> last_asked_at_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<bus::TraceDump> waiting_;
   std::optional<TimePoint> last_automatic_;
+  std::optional<File> last_;
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -36,7 +36,9 @@ class SimulatedBus;
 ///          lost_request | lost_reply     spoils the next exchange; `count N`: the next N, `count 0`: all,
 ///                                        `for S`: all within S, `function F`: only that function code (or 0x..;
 ///                                        CompoWay/F: service, 0x0102); exception N: the Modbus exception code
-///                                        (CompoWay/F: the response code, 0x1103; up to 0xFF the end code, 0x13)
+///                                        (CompoWay/F: the response code, 0x1103; up to 0xFF the end code, 0x13);
+///                                        `writes`, `reads`: only such requests (17H writes, a loop-back does neither);
+///                                        `longer BYTES`: only replies with more bytes than this
 ///     NAME clear                         takes back what waits
 ///     NAME busy S                        EEPROM write in progress for S: parameter writes are refused (3G3JE: all
 ///                                        writes, with 2203)

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "inverter_bus/simulation/pseudo_terminal.h"
@@ -32,6 +33,9 @@ public:
   /// @param answer gets the answer to each command
   void readCommands(int descriptor, std::function<void(const std::string&)> answer);
 
+  /// The parity that the client is taken to use, whatever its terminal shows (see terminal_settings.h). Call it before run().
+  void assumeParity(Parity parity);
+
   /// Returns after stop(). @param realtime_priority > 0: SCHED_FIFO for the calling thread, where that is permitted
   void run(int realtime_priority = 0);
   void stop() noexcept;
@@ -41,6 +45,7 @@ public:
 private:
   void step(bool readable);
   void matchPort();
+  void matchSettings(TimePoint now);
   void handOver();
   void readCommandBytes();
   int waitTime(long& nanoseconds) const;
@@ -50,6 +55,8 @@ private:
   std::mutex mutex_;
   int wake_;
   std::atomic<bool> stop_{ false };
+  std::optional<Parity> assumed_parity_;
+  std::optional<LineSettings> master_;  ///< as seen last
   int command_descriptor_ = -1;
   std::string command_text_;
   std::function<void(const std::string&)> answer_;

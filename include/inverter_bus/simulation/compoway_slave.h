@@ -66,6 +66,7 @@ protected:
   bool isBroadcast(const Bytes& frame) const override;
   /// @return MRC and SRC as one number: 0x0102
   std::optional<int> functionOf(const Bytes& frame) const override;
+  Access accessOf(const Bytes& frame) const override;
   /// @param code a response code; below 0100h an end code
   Answer exceptionAnswer(const Bytes& frame, int code) override;
   Bytes foreignReply(const Bytes& reply, bool other_station) override;

@@ -28,6 +28,14 @@ enum class FaultKind
   LATE              ///< the reply comes `value` seconds later
 };
 
+/// What a request does to the drive. A frame that does both (17H) writes; a loop-back does neither.
+enum class Access
+{
+  READ,
+  WRITE,
+  NEITHER
+};
+
 struct Fault
 {
   FaultKind kind = FaultKind::LOST_REPLY;
@@ -35,6 +43,15 @@ struct Fault
   int count = 1;                   ///< how many of the next exchanges it hits; 0: all until `until` or a clear
   std::optional<TimePoint> until;  ///< end of its life
   std::optional<int> function;     ///< hits only requests with this function code
+  std::optional<Access> access;    ///< hits only requests that do this
+  std::size_t longer_than = 0;     ///< hits only exchanges whose reply has more bytes than this; 0: all
+};
+
+/// What decides whether a fault is for an exchange.
+struct ExchangeFacts
+{
+  std::optional<int> function;
+  Access access = Access::NEITHER;
 };
 
 /// The injected faults of one drive that wait for an exchange. No threads of its own.
@@ -46,10 +63,14 @@ public:
   std::size_t size() const;
 
   /// The faults that hit the exchange at `now`, at most one of each kind, in the order of FaultKind; their
-  /// counts go down by one.
-  std::vector<Fault> take(std::optional<int> function, TimePoint now);
+  /// counts go down by one. Those for long replies only are not among them.
+  std::vector<Fault> take(const ExchangeFacts& exchange, TimePoint now);
+  /// The same of those for long replies only, once the reply is known.
+  std::vector<Fault> takeForReply(const ExchangeFacts& exchange, std::size_t reply_size, TimePoint now);
 
 private:
+  std::vector<Fault> takeSome(const ExchangeFacts& exchange, std::size_t reply_size, bool long_only, TimePoint now);
+
   std::vector<Fault> faults_;
 };
 }  // namespace simulation

@@ -61,7 +61,6 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
-  bool understandsLine() const override;
   void describeMotor(KeyValues& values) const override;
 
   bool isGroup(std::uint8_t station) const override;
@@ -120,7 +119,7 @@ private:
   void commission(const std::string& code, double value);
   Index known(const char* code) const;
   double panelValue(Index index) const;
-  bool serialFits() const;
+  std::optional<LineSettings> serialInEffect() const;
   void control();
   bool runCommanded() const;
   double wantedFrequency() const;
@@ -180,7 +179,6 @@ private:
   bool store_next_write_ = false;  // register 0902h
   bool store_this_write_ = false;
   TimePoint busy_until_;
-  bool serial_fits_ = true;
   double thermal_ = 0.0;     // electronic thermal, trips at 1
   double run_time_ = 0.0;    // [s]
   double power_time_ = 0.0;  // [s]

@@ -67,7 +67,6 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
-  bool understandsLine() const override;
   void describeMotor(KeyValues& values) const override;
 
   Duration replyDelay() const override;
@@ -93,7 +92,7 @@ private:
 
   // je_drive.cpp: commissioning, control, by hand
   void commission();
-  bool serialFits() const;
+  LineSettings serialInEffect() const;
   bool busCommands() const;
   bool busRuns() const;
   double wantedFrequency() const;
@@ -125,7 +124,6 @@ private:
   int trip_ = 0;  // the last one
   std::uint64_t trips_ = 0;
   TimePoint busy_until_;
-  bool serial_fits_ = true;
 
   struct Codes
   {

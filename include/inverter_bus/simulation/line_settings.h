@@ -4,6 +4,8 @@
 #ifndef INVERTER_BUS_SIMULATION_LINE_SETTINGS_H
 #define INVERTER_BUS_SIMULATION_LINE_SETTINGS_H
 
+#include <string>
+
 #include "inverter_bus/simulation/time.h"
 
 namespace inverter_bus
@@ -29,6 +31,12 @@ inline const char* nameOf(Protocol protocol)
   return protocol == Protocol::MODBUS_RTU ? "modbus_rtu" : "compoway_f";
 }
 
+/// @return 'N', 'E' or 'O', as in 8N1
+inline char letterOf(Parity parity)
+{
+  return parity == Parity::NONE ? 'N' : (parity == Parity::EVEN ? 'E' : 'O');
+}
+
 /// How bytes and frames travel on the line.
 struct LineSettings
 {
@@ -37,6 +45,13 @@ struct LineSettings
   int data_bits = 8;  ///< 7 or 8
   int stop_bits = 1;  ///< 1 or 2
   Protocol protocol = Protocol::MODBUS_RTU;
+
+  /// "19200 baud 8N1"
+  std::string text() const
+  {
+    return std::to_string(baud_rate) + " baud " + std::to_string(data_bits) + letterOf(parity) +
+           std::to_string(stop_bits);
+  }
 
   /// Time of one byte on the wire: start bit, data, parity, stop.
   Duration characterTime() const
@@ -54,6 +69,14 @@ struct LineSettings
       return std::chrono::milliseconds(2);
     }
     return baud_rate > 19200 ? seconds(0.00175) : characterTime() * 7 / 2;
+  }
+
+  /// @return true when a receiver with these settings makes the same bytes of what is sent with those of `sender`: else its
+  /// bytes are garbage with framing and parity errors, and no frame comes out of them. Stop bits are only silence to a receiver.
+  bool understands(const LineSettings& sender) const
+  {
+    return baud_rate == sender.baud_rate && parity == sender.parity && data_bits == sender.data_bits &&
+           protocol == sender.protocol;
   }
 
   /// The silence by which a drive knows that a request is over; CompoWay/F knows it by its last byte.

@@ -56,6 +56,7 @@ protected:
   std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) override;
   bool isBroadcast(const Bytes& frame) const override;
   std::optional<int> functionOf(const Bytes& frame) const override;
+  Access accessOf(const Bytes& frame) const override;
   Answer exceptionAnswer(const Bytes& frame, int code) override;
   Bytes foreignReply(const Bytes& reply, bool other_station) override;
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "inverter_bus/simulation/bytes.h"
+#include "inverter_bus/simulation/line_settings.h"
 
 namespace inverter_bus
 {
@@ -18,8 +19,9 @@ class PseudoTerminal
 {
 public:
   /// Opens the terminal. @param link an older link of that name is replaced
+  /// @param settings what it is set to until a client sets it
   /// @throws std::runtime_error when there is no terminal to be had, or the link can't be made; the text says why
-  explicit PseudoTerminal(const std::string& link);
+  explicit PseudoTerminal(const std::string& link, const LineSettings& settings = LineSettings());
   ~PseudoTerminal();
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
@@ -45,6 +47,7 @@ private:
 
   std::string link_;
   std::string path_;
+  LineSettings settings_;
   int near_ = -1;
   int far_ = -1;
 };

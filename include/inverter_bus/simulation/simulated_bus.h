@@ -41,6 +41,8 @@ public:
   /// @name The master's end of the line
   /// @{
   void send(const Bytes& bytes, TimePoint now);
+  /// The master's port is set otherwise than the scan list says.
+  void setMaster(const LineSettings& settings, TimePoint now);
   std::optional<TimePoint> nextEvent() const;
   void advance(TimePoint now);
   std::vector<Delivery> takeOutput(TimePoint now);

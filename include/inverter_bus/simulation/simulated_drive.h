@@ -12,6 +12,7 @@
 
 #include "inverter_bus/simulation/bytes.h"
 #include "inverter_bus/simulation/fault_queue.h"
+#include "inverter_bus/simulation/line_settings.h"
 #include "inverter_bus/simulation/random.h"
 #include "inverter_bus/simulation/time.h"
 
@@ -81,6 +82,10 @@ public:
   /// @return false when the drive has no power or its connection to the bus is cut: a reply that it owes won't come
   bool canSend() const;
   bool powered() const;
+  /// How the master talks from now on; until the first call exactly as the drive understands it.
+  void setLine(const LineSettings& line);
+  /// @return false when the drive hears garbage: its serial settings are others than the master's
+  bool understandsLine() const;
   void countLostToGap();
   void countEarly();
   void countLostToBusy();
@@ -141,6 +146,7 @@ protected:
   virtual bool answersDamaged() const;
   virtual bool isBroadcast(const Bytes& frame) const = 0;
   virtual std::optional<int> functionOf(const Bytes& frame) const = 0;
+  virtual Access accessOf(const Bytes& frame) const = 0;
   virtual Answer exceptionAnswer(const Bytes& frame, int code) = 0;
   virtual Bytes foreignReply(const Bytes& reply, bool other_station) = 0;
   /// @}
@@ -164,13 +170,15 @@ protected:
   void setStation(int station);
   /// The drive hears nothing until then (it goes on running).
   void goDeaf(TimePoint until);
-  /// @return false when the drive can't understand the line at all (its serial settings differ)
-  virtual bool understandsLine() const;
+  /// Takes other serial settings (after a power cycle); nothing: the drive understands no line at all.
+  /// @param stop_bits_matter the drive checks them
+  void setSerial(const std::optional<LineSettings>& serial, bool stop_bits_matter = false);
   Random& random();
 
 private:
   bool listening() const;
-  std::optional<Answer> serve(const Bytes& frame, const std::vector<Fault>& faults, TimePoint now);
+  std::optional<Answer> serve(const Bytes& frame, const ExchangeFacts& exchange, std::vector<Fault> faults,
+                              TimePoint now);
   void spoil(Answer& answer, const Fault& fault);
   void changeConnection();
 
@@ -183,6 +191,10 @@ private:
   std::optional<TimePoint> power_returns_;
   std::optional<TimePoint> online_returns_;
   TimePoint deaf_until_;
+  std::optional<LineSettings> line_;
+  std::optional<LineSettings> serial_;
+  bool serial_told_ = false;
+  bool stop_bits_matter_ = false;
   FaultQueue faults_;
   ExchangeCounters counters_;
 };

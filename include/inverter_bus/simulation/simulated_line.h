@@ -112,6 +112,8 @@ public:
   /// What has come out for the master since the last call. @param now when the master can see it
   std::vector<Delivery> takeOutput(TimePoint now);
 
+  /// The master's port is set otherwise; drives with other settings hear garbage from now on.
+  void setMaster(const LineSettings& settings, TimePoint now);
   /// The master's adapter is unplugged: what it was sending breaks off, and it hears nothing.
   void setConnected(bool connected, TimePoint now);
   /// The adapter sends everything back to the master that the master sends (no echo suppression).

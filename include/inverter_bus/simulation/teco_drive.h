@@ -69,7 +69,6 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
-  bool understandsLine() const override;
   void describeMotor(KeyValues& values) const override;
 
   bool takesBroadcast(const Bytes& frame) const override;
@@ -103,7 +102,7 @@ private:
 
   // teco_drive.cpp: commissioning, control, supervision
   void commission();
-  bool serialFits() const;
+  std::optional<LineSettings> serialInEffect() const;
   bool runBit(std::uint16_t command) const;
   bool busRuns() const;
   bool busSetsFrequency() const;
@@ -142,7 +141,6 @@ private:
   int trip_ = 0;  // the last one
   std::uint64_t trips_ = 0;
   TimePoint busy_until_;
-  bool serial_fits_ = true;
 
   struct Codes
   {

@@ -69,7 +69,6 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
-  bool understandsLine() const override;
   void describeMotor(KeyValues& values) const override;
 
   std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) override;
@@ -89,7 +88,6 @@ private:
   /// Parameters that count as they were at the last power-up, reset or F899 (p. 47, 48).
   struct InEffect
   {
-    bool line_fits = true;
     std::array<std::uint32_t, 2> write_slots{};
     std::array<std::uint32_t, 5> read_slots{};
   };

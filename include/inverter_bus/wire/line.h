@@ -150,6 +150,9 @@ public:
   Duration costUnanswered(const Request& request) const;
 
   const LineCounters& counters() const;
+  /// Of the open port, see Port.
+  std::optional<AdapterLatency> adapterLatency() const;
+
   /// Longest pause inside a reply that is waited out.
   Duration patience() const;
 

@@ -4,6 +4,7 @@
 #define INVERTER_BUS_WIRE_PORT_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,14 @@ enum class ReceiveResult
   Gone
 };
 
+/// How long an adapter collects bytes before it delivers them.
+struct AdapterLatency
+{
+  Duration latency{ 0 };
+  /// Where root may write another number of milliseconds.
+  std::string file;
+};
+
 /// Bytes on a line: a serial port, a TCP connection, or a simulated one. Knows nothing of frames.
 ///
 /// Only the bus thread may call it. No call throws, and none blocks longer than it says.
@@ -82,6 +91,11 @@ public:
   virtual Loss lastLoss() const
   {
     return Loss::Gone;
+  }
+  /// As far as the driver of an adapter tells; may change at any time. Reads sysfs.
+  virtual std::optional<AdapterLatency> adapterLatency() const
+  {
+    return std::nullopt;
   }
   /// A network connection: no adapter on the way returns what is sent, and somebody at its other end may speak first.
   virtual bool isNetwork() const

@@ -4,6 +4,7 @@
 #define INVERTER_BUS_WIRE_SERIAL_PORT_H
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "inverter_bus/wire/port.h"
@@ -68,8 +69,9 @@ unsigned bitsPerCharacter(const SerialSettings& settings);
 /// within 2 % of is a refused setting: open() returns OpenResult::NotThere with the rates that are next to it.
 std::unique_ptr<Port> makeSerialPort(const SerialSettings& settings);
 
-/// FTDI latency timer of the adapter behind \p device in milliseconds, or -1 if there is none. Reads sysfs; any thread.
-int adapterLatencyMs(const std::string& device);
+/// FTDI latency timer of the adapter behind \p device: how long its chip collects bytes before it delivers them, 1 to 255
+/// ms. Nothing for every other device. Reads \p sysfs; any thread.
+std::optional<AdapterLatency> adapterLatency(const std::string& device, const std::string& sysfs = "/sys");
 }  // namespace wire
 }  // namespace inverter_bus
 

@@ -3,16 +3,13 @@
 #ifndef INVERTER_BUS_WIRE_SHOWN_H
 #define INVERTER_BUS_WIRE_SHOWN_H
 
-#include <cstddef>
-#include <string>
+#include "inverter_bus/config/shown.h"
 
 namespace inverter_bus
 {
 namespace wire
 {
-/// \p text that came from outside (a message, a file, a drive), fit for an answer, a status or a log: one line, valid UTF-8
-/// without control characters, and cut after \p longest bytes with a note of its length.
-std::string shown(const std::string& text, std::size_t longest = 100);
+using config::shown;
 }  // namespace wire
 }  // namespace inverter_bus
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/wire/shown.h"
+#include "inverter_bus/config/shown.h"
 
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace inverter_bus
 {
-namespace wire
+namespace config
 {
 namespace
 {
@@ -47,5 +47,5 @@ TEST(ShownText, isCutBetweenCharactersWithItsLength)
   EXPECT_EQ(std::string(100, 'x') + "... (1000000 bytes)", shown(std::string(1000000, 'x')));
 }
 }  // namespace
-}  // namespace wire
+}  // namespace config
 }  // namespace inverter_bus

@@ -6,7 +6,6 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -14,6 +13,9 @@
 
 #include <boost/program_options.hpp>
 
+#include "inverter_bus/bench/scan_list.h"
+#include "inverter_bus/bus/configuration.h"
+#include "inverter_bus/drive/profile.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "inverter_bus/simulation/bus_runner.h"
 #include "inverter_bus/simulation/simulated_bus.h"
@@ -44,11 +46,13 @@ po::options_description describeOptions()
       ("gap", po::value<std::string>()->default_value("enforce"),                                                   //
        "enforce | ignore: a request without the 3.5-character silence before it is lost | is served and counted")   //
       ("gap-tolerance", po::value<double>()->default_value(0.0003, "0.0003"), "[s] a request may come this early")  //
-      ("baud", po::value<int>(), "baud rate instead of the file's")                                                 //
-      ("parity", po::value<std::string>(), "none | even | odd instead of the file's")                               //
-      ("stop-bits", po::value<int>(), "1 | 2 instead of the file's")                                                //
-      ("seed", po::value<std::uint64_t>()->default_value(1), "of everything that is left to chance")                //
-      ("realtime-priority", po::value<int>()->default_value(0), "> 0: SCHED_FIFO, for a punctual wire")             //
+      ("baud", po::value<int>(), "baud rate that the drives are set to, instead of the file's")                     //
+      ("parity", po::value<std::string>(), "none | even | odd: that of the drives, instead of the file's")          //
+      ("stop-bits", po::value<int>(), "1 | 2: those of the drives, instead of the file's")                          //
+      ("client-parity", po::value<std::string>(),
+       "none | even | odd: what the client uses, where its settings don't show it (pyserial)")           //
+      ("seed", po::value<std::uint64_t>()->default_value(1), "of everything that is left to chance")     //
+      ("realtime-priority", po::value<int>()->default_value(0), "> 0: SCHED_FIFO, for a punctual wire")  //
       ("turnaround", po::value<double>(), "[s] answer time of all drives after the silence");
   return options;
 }
@@ -62,28 +66,49 @@ std::string required(const po::variables_map& values, const char* key)
   return values[key].as<std::string>();
 }
 
-BusConfig readConfig(const po::variables_map& values)
+Parity parityOf(const std::string& option, const std::string& text)
 {
-  std::map<std::string, std::string> overrides;
+  if (text != "none" && text != "even" && text != "odd")
+  {
+    throw ConfigError("--" + option + ": " + text + " (allowed: none, even, odd)");
+  }
+  return text == "none" ? Parity::NONE : (text == "even" ? Parity::EVEN : Parity::ODD);
+}
+
+SerialOptions readSerialOptions(const po::variables_map& values)
+{
+  SerialOptions options;
   if (values.count("baud") != 0)
   {
-    overrides["baud_rate"] = std::to_string(values["baud"].as<int>());
+    options.baud_rate = values["baud"].as<int>();
   }
   if (values.count("parity") != 0)
   {
-    overrides["parity"] = values["parity"].as<std::string>();
+    options.parity = parityOf("parity", values["parity"].as<std::string>());
   }
   if (values.count("stop-bits") != 0)
   {
-    overrides["stop_bits"] = std::to_string(values["stop-bits"].as<int>());
+    options.stop_bits = values["stop-bits"].as<int>();
   }
-  BusConfig config = busConfigFromFile(required(values, "scan-list"), overrides);
-  for (DriveConfig& drive : config.drives)
+  return options;
+}
+
+BusConfig readConfig(const po::variables_map& values)
+{
+  const std::string path = required(values, "scan-list");
+  inverter_bus::bench::SimulatedScanList list =
+      inverter_bus::bench::readScanList(inverter_bus::bus::readYamlFile(path), path,
+                                        inverter_bus::drive::shippedProfileDirectory(), readSerialOptions(values));
+  for (const std::string& warning : list.warnings)
+  {
+    std::cerr << "simulated_bus: " << warning << std::endl;
+  }
+  for (DriveConfig& drive : list.config.drives)
   {
     drive.options.turnaround =
         values.count("turnaround") != 0 ? values["turnaround"].as<double>() : drive.options.turnaround;
   }
-  return config;
+  return list.config;
 }
 
 LineOptions readLineOptions(const po::variables_map& values)
@@ -139,6 +164,10 @@ void play(const po::variables_map& values)
     bus.setObserver([&](const FrameRecord& frame) { *trace << frameText(frame, bus.start()) << std::endl; });
   }
   BusRunner runner(bus, link);
+  if (values.count("client-parity") != 0)
+  {
+    runner.assumeParity(parityOf("client-parity", values["client-parity"].as<std::string>()));
+  }
   catchSignals(runner);
   runner.readCommands(STDIN_FILENO, [](const std::string& answer) { std::cout << answer << std::endl; });
   std::cout << "simulated bus ready: " << link << " -> " << runner.terminal().path() << ", " << bus.drives().size()

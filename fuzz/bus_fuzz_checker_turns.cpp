@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include <string>
+
+#include "bus_fuzz_checker.h"
+
+// Contract, 8.1 and 8.15: nobody takes another one's turn, and alive means data.
+
+namespace inverter_bus
+{
+namespace fuzz
+{
+namespace
+{
+// After a lost exchange what is alike waits for a while (rule 3.9).
+constexpr double BARRED_S = 3.0;
+// Of a drive's own time-out: before it has passed, the drive is not late yet, but it has the next turn.
+constexpr double NEAR_SHARE = 0.95;
+}  // namespace
+
+/// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent; or its
+/// own time-out is near.
+bool Checker::waits(TimePoint now, std::size_t index) const
+{
+  const Lane& lane = lanes_[index];
+  if (!online(index) || lane.stopping || (lane.lost_at != TimePoint() && now - lane.lost_at < seconds(BARRED_S)))
+  {
+    return false;
+  }
+  const bool commanded = lane.permit && !lane.settled && lane.run_copies == 0 && lane.set_copies == 0 &&
+                         !lane.set_answered && lane.accepted_at < turn_began_;
+  const double timeout = scene_.inverters[index].drive_timeout;
+  const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&
+                    now - *lane.last_heard > seconds(NEAR_SHARE * timeout);
+  return commanded || near;
+}
+
+/// But for stops, who did not answer gets no second exchange while another one waits or has a deadline. (Answered frames
+/// that belong together are short; that they alternate is held by the scheduler's own tests.)
+void Checker::checkTurn(TimePoint now)
+{
+  const std::optional<std::size_t> last = turn_of_;
+  const bool of_stop = facts_.broadcast || facts_.stop || (facts_.inverter && lanes_[*facts_.inverter].stopping);
+  turn_of_ = of_stop ? std::optional<std::size_t>() : facts_.inverter;
+  // The lowest class has every eighth exchange, whoever waits.
+  const bool again = turn_of_ && last == turn_of_ && !answered_before_ && !facts_.reads_parameter && !shutting_down_;
+  for (std::size_t index = 0; again && index < lanes_.size(); ++index)
+  {
+    if (index != *turn_of_ && waits(now, index))
+    {
+      fail(now, "nobody takes another one's turn",
+           nameOf(*turn_of_) + " gets two exchanges in a row while " + nameOf(index) +
+               " waits: " + simulation::toHex(request_));
+    }
+  }
+  turn_began_ = now;
+}
+
+/// Nobody is offline because others are.
+void Checker::checkWentOffline(TimePoint now, std::size_t index) const
+{
+  const Lane& lane = lanes_[index];
+  const Duration lately = seconds(scene_.longestBlindness());
+  // Published before anybody has said that the exchange is over.
+  const bool just_now = in_flight_ && facts_.inverter == index && !answered_;
+  const bool lost = just_now || (lane.lost_at != TimePoint() && now - lane.lost_at < lately);
+  const bool refused = lane.exception_at != TimePoint() && now - lane.exception_at < lately;
+  const bool broken = !connected_ || now - connected_since_ < lately;
+  if (!lost && !refused && !broken)
+  {
+    fail(now, "a healthy drive is not shown as offline",
+         nameOf(index) + " has answered everything that it was asked lately");
+  }
+}
+}  // namespace fuzz
+}  // namespace inverter_bus

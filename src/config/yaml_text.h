@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_SRC_CONFIG_YAML_TEXT_H
+#define INVERTER_BUS_SRC_CONFIG_YAML_TEXT_H
+
+#include <optional>
+#include <string>
+
+#include "inverter_bus/config/yaml.h"
+
+namespace inverter_bus
+{
+namespace config
+{
+/// What is wrong with \p yaml as a text, before a parser sees it: characters that PyYAML refuses and yaml-cpp does not (control
+/// characters, bytes that are no UTF-8, tabs between words), and blocks nested so deeply that a parser which recurses would
+/// leave its stack.
+std::optional<YamlProblem> problemOfText(const std::string& yaml);
+
+/// Documents in \p yaml: 0, 1, or 2 for more. Looks at the text before nodes are made of it, since yaml-cpp collects
+/// documents without end where a comma stands at the beginning of one.
+/// \throws YAML::Exception for malformed text, and for one that is nested too deeply
+int countDocuments(const std::string& yaml);
+}  // namespace config
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SRC_CONFIG_YAML_TEXT_H

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+#ifndef INVERTER_BUS_SRC_SIMULATION_BUS_CONFIG_DRIVES_H
+#define INVERTER_BUS_SRC_SIMULATION_BUS_CONFIG_DRIVES_H
+
+#include "inverter_bus/config/value.h"
+#include "inverter_bus/simulation/bus_config.h"
+
+namespace inverter_bus
+{
+namespace simulation
+{
+/// The map `simulation`: what it says about drives of the scan list, and drives that no scan list knows.
+/// @param simulation nullptr: there is none
+/// @param line what a further drive is set to unless it says otherwise
+/// @throws ConfigError
+void readSimulation(const config::Value* simulation, const LineSettings& line, BusConfig& config);
+}  // namespace simulation
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SRC_SIMULATION_BUS_CONFIG_DRIVES_H

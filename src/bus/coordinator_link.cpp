@@ -354,6 +354,8 @@ void Coordinator::renewing(TimePoint now)
             ": is open, but nobody answers any more: it is opened anew, again and again while that lasts",
         PORT);
   }
+  // So long without an answer is no gap any more: whatever runs is to be stopped first when somebody answers again.
+  loseEverybody(now, wire::ERROR_TIMEOUT);
   reopening(now);
 }
 

@@ -109,7 +109,9 @@ std::string LinkRecord::advice() const
   const std::uint64_t most = std::max(total(exceptions_), std::max(damaged_, lost()));
   if (most == 0 || lost() == most)
   {
-    return late_ > 0 ? "raise response_timeout" : "check supply, wiring, station number and serial settings";
+    return late_ > 0 ? "raise response_timeout"
+                     : "check supply, wiring, station number and serial settings; if it answers when it is alone, it "
+                       "wants silence before a request (timing: quiet_before)";
   }
   return damaged_ == most ? "check baud rate, parity, stop bits, termination, and whether the station stands twice"
                           : "check that this drive is the one of the profile, and what it refuses";

@@ -9,7 +9,7 @@ namespace bus
 namespace
 {
 // A stop that was confirmed so often in a row, and asked for again within so short a time, is one of a flood of them.
-constexpr unsigned FLOOD_OF_STOPS = 4;
+constexpr unsigned FLOOD_OF_STOPS = 8;
 constexpr double FLOOD_PAUSE_S = 0.5;
 }  // namespace
 

@@ -159,7 +159,9 @@ bool GatewayRecord::takes(const Answer& answer)
 {
   const NumberHabit number = acceptableNumber(answer);
   const UnitHabit unit = unitHabit(current_.station, answer.unit);
-  if (mixed_ || number == NumberHabit::None || unit == UnitHabit::None)
+  // Numbers that have proved right decide from then on: a reply under another one is none of ours.
+  const bool foreign = trusted_ && number != NumberHabit::Same;
+  if (mixed_ || foreign || number == NumberHabit::None || unit == UnitHabit::None)
   {
     return false;
   }
@@ -229,11 +231,7 @@ void GatewayRecord::noteQuirk(NumberHabit number, UnitHabit unit)
   wrong_numbers_ |= number == NumberHabit::Same ? 0 : static_cast<unsigned>(number);
   wrong_units_ |= unit == UnitHabit::Same ? 0 : static_cast<unsigned>(unit);
   // A number that has proved right tells whose answer it is, whatever the unit.
-  if (!trusted_ || number != NumberHabit::Same)
-  {
-    trusted_ = false;
-    quirky_ = true;
-  }
+  quirky_ = quirky_ || !trusted_;
 }
 
 void GatewayRecord::givenUp(TimePoint now)

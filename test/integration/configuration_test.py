@@ -47,6 +47,14 @@ class Configuration(unittest.TestCase):
             del entries[1][remove]
         self.assertEndsNaming(words, scan_list=entries)
 
+    def logOfADriverThatRuns(self, **changes):
+        """On a line of its own: nothing may be sent on the others'."""
+        bench = Bench(belts(1))
+        try:
+            return bench.start_driver(**changes).log()
+        finally:
+            bench.close()
+
     def testUnknownKeys(self):
         self.assertEndsNaming(['baudrate', 'baud_rate'], baudrate=9600)
         self.assertEntryEndsNaming(['nod', 'scan_list[1]'], nod=3)
@@ -57,18 +65,15 @@ class Configuration(unittest.TestCase):
         self.assertEndsNaming(['slow_interval', 'later version'], slow_interval=1.0)
 
     def testWhatLiesBelowTheNameForOthersIsIgnoredWithAWarning(self):
-        process = self.bench.start_driver(rate=10, diagnostic_period=0.5, teleop={'scale': 2.0})
+        log = self.logOfADriverThatRuns(rate=10, diagnostic_period=0.5, teleop={'scale': 2.0})
         for name in ('rate', 'teleop'):
-            self.assertEqual(len([line for line in process.log().splitlines() if "'%s'" % name in line]), 1, process.log())
-        self.assertNotIn('diagnostic_period', process.log())
-        process.end()
+            self.assertEqual(len([line for line in log.splitlines() if "'%s'" % name in line]), 1, log)
+        self.assertNotIn('diagnostic_period', log)
 
     def testNumbersThatAreTextsGetAHint(self):
         self.assertEntryEndsNaming(['node', "'08'", 'write 8'], node='08')
         self.assertEntryEndsNaming(['node', "'2'", 'without quotes'], node='2')
-        process = self.bench.start_driver(interval='5e-3')
-        self.assertIn('write 0.005', process.log())
-        process.end()
+        self.assertIn('write 0.005', self.logOfADriverThatRuns(interval='5e-3'))
 
     def testAWrongConfirmIsNamedWhereItStands(self):
         entries = belts(2)

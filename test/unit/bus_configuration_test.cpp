@@ -135,6 +135,22 @@ TEST(ConfigurationTest, allKeysOfTheBusAreRead)
   EXPECT_EQ("/tmp/traces", bus.trace_directory);
 }
 
+TEST(ConfigurationTest, aBaudRateNeedNotBeOneOfTheUsualOnes)
+{
+  // C071 = 09 of an MX2.
+  EXPECT_EQ(76800U, read("baud_rate: 76800\n" + ONE).bus.serial.baud_rate);
+}
+
+TEST(ConfigurationTest, thePauseInAReplyGoesIntoTheTiming)
+{
+  const auto pause = [](const std::string& keys) { return toSeconds(makeTiming(read(keys + ONE).bus).patience(0.0)); };
+  EXPECT_NEAR(0.025, pause(""), 1e-9);
+  EXPECT_NEAR(0.075, pause("baud_rate: 2400\n"), 1e-9);
+  EXPECT_NEAR(0.1, pause("port: tcp://10.0.0.7\n"), 1e-9);
+  EXPECT_NEAR(0.3, pause("response_timeout: 0.5\npause_in_reply: 0.3\n"), 1e-9);
+  EXPECT_NEAR(0.3, pause("port: tcp://10.0.0.7\nresponse_timeout: 0.5\npause_in_reply: 0.3\n"), 1e-9);
+}
+
 TEST(ConfigurationTest, invertersComeInNodeOrderWithTheirDrives)
 {
   const Configuration configuration = read(
@@ -286,6 +302,8 @@ INSTANTIATE_TEST_SUITE_P(
                { "(fan)", "limits.read_registers", "170", ALLOWED } },
         Wrong{ "unknownProtocol", "protocol: modbus\n" + ONE, { "'protocol'", "'modbus'", "allowed: modbus_rtu" } },
         Wrong{ "unknownBaudRate", "baud_rate: 19201\n" + ONE, { "'baud_rate'", "19201", "19200", ALLOWED } },
+        Wrong{ "baudRateTooLow", "baud_rate: 49\n" + ONE, { "'baud_rate'", "49", "50 to 4000000", ALLOWED } },
+        Wrong{ "baudRateTooHigh", "baud_rate: 4000001\n" + ONE, { "'baud_rate'", "50 to 4000000", ALLOWED } },
         Wrong{ "baudRateText", "baud_rate: '9600'\n" + ONE, { "'baud_rate'", "'9600'", ALLOWED } },
         Wrong{ "baudRateOfNoDrive", "baud_rate: 300\n" + ONE, { "'baud_rate'", "300", "belt", "omron_mx2", ALLOWED } },
         Wrong{ "unknownParity", "parity: mark\n" + ONE, { "'parity'", "'mark'", "none, even, odd" } },

@@ -225,8 +225,9 @@ TEST_F(BehindAGateway, aMuteConnectionIsOpenedAnew)
   start();
   turn(A, "a");
   bus_->gateway().behaviour.mute = true;
-  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return !online(A); }));
   const std::size_t before = bus_->gateway().connections().size();
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return !online(A); })) << "shown, stopped and locked";
+  EXPECT_TRUE(bus_->status(A).locked);
   ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().connections().size() > before; }));
   EXPECT_GE(bus_->gateway().abandoned(), 1U);
   bus_->gateway().behaviour.mute = false;

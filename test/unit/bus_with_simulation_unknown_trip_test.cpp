@@ -149,8 +149,8 @@ TEST(UnknownTripOfAToshiba, aCodeThatNoTableListsStopsIt)
   // FC90 is 0 without a trip; of its codes this profile knows two.
   VirtualBus bus(
       "port: /dev/virtual\nbaud_rate: 19200\nparity: even\nscan_list:\n  - {name: pump, node: 1, drive: "
-      "toshiba_vfs15, command_timeout: 1.0, overrides: {status: {faulted: {register: 0xFC90, values: {0: 0, "
-      "1: 1, 2: 1}}}}}\n");
+      "toshiba_vfs15, command_timeout: 1.0, overrides: {status: {faulted: {register: 0xFC90, values: {'0': 0, "
+      "'1': 1, '2': 1}}}}}\n");
   bus.settleIn();
   bus.stream(0, 20.0, 0.1, 10.0);
   ASSERT_TRUE(bus.runUntil(1.0, [&] { return bus.status(0).monitor.running.value_or(false); }));

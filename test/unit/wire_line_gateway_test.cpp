@@ -277,14 +277,20 @@ TEST_F(GatewayLine, aTrustedNumberTellsWhateverTheUnit)
   EXPECT_TRUE(line_.gatewayTrusted());
 }
 
-TEST_F(GatewayLine, trustIsLostByOneWrongNumber)
+TEST_F(GatewayLine, aTrustedConnectionTakesNoReplyUnderAnotherNumber)
 {
-  earnTrust();
-  number_ = Number::Zero;
-  EXPECT_EQ(Outcome::Ok, good(READ, "03 04 00 00 00 00").outcome);
-  EXPECT_FALSE(line_.gatewayTrusted());
-  ask(READ);
-  EXPECT_FALSE(mayAsk(READ));
+  for (const Number number : { Number::Zero, Number::PlusOne, Number::Swapped })
+  {
+    reopen();
+    number_ = Number::Kept;
+    earnTrust();
+    number_ = number;
+    EXPECT_NE(Outcome::Ok, good(READ, "03 04 00 00 00 00").outcome) << static_cast<int>(number);
+    EXPECT_TRUE(line_.gatewayTrusted());
+    EXPECT_EQ("", line_.gatewayQuirk());
+    number_ = Number::Kept;
+    EXPECT_EQ(Outcome::Ok, good(READ, "03 04 00 00 00 01").outcome) << "the next one is taken as before";
+  }
 }
 
 TEST_F(GatewayLine, whatIsOutstandingIsKnownUntilItIsAnswered)

@@ -337,7 +337,8 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   if (again && !cancelled)
   {
     // The other members of a group go on without it.
-    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now);
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now,
+                         inverter.movement.target() && inverter.movement.target()->zero);
     finishExchange(current, reply, true);
     return;
   }
@@ -393,13 +394,18 @@ void Coordinator::failVelocity(const Current& current, const wire::Reply& reply,
 void Coordinator::writesLost(TimePoint now, Inverter& inverter)
 {
   const std::string text = inverter.lost_writes.text();
-  if (!inverter.lost_writes.raised())
+  const bool news = !inverter.lost_writes.raised();
+  if (news)
   {
     log(Level::Error, inverter.config.name + ": stopping and locking: " + text);
   }
   inverter.lost_writes.raise();
   inverter.velocityFailed(wire::ERROR_TIMEOUT, text);
   requestStop(now, inverter, StopMode::Decelerate, true, "");
+  if (news && inverter.known())
+  {
+    publish(now, inverter);
+  }
 }
 
 /// What reaches the drive's EEPROM wears it, answered or not, and each repeat again.

@@ -54,7 +54,7 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
 void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
 {
   behind_another_ = false;
-  if (!gateway_.active() || current.request.broadcast)
+  if (!gateway_.active() || current.request.broadcast || reply.ticket == 0)
   {
     return;
   }

@@ -48,6 +48,8 @@ void Coordinator::done(const wire::Reply& reply)
   }
   const Current current = *current_;
   current_.reset();
+  // Before the end of the connection is booked: what was under way then may still be carried out.
+  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::PortLost)
   {
     ended(current, reply);
@@ -69,7 +71,6 @@ void Coordinator::done(const wire::Reply& reply)
 /// The end of an exchange over a port that is there, or soon is again.
 void Coordinator::ended(const Current& current, const wire::Reply& reply)
 {
-  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::Timeout || reply.finished_at - opened_at_ > seconds(PORT_WORKS_AFTER_S))
   {
     portWorks();

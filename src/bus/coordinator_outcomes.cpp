@@ -241,9 +241,10 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     return;
   }
   const bool write = !current.resync && !inverter.stop.written();
-  if (reply.connection_closed && !inverter.offline())
+  if (reply.connection_closed && !inverter.offline() && !connection_.closedAgain(current.inverter))
   {
-    // It counts no try: the same frame goes first over the next connection.
+    // It counts no try: the same frame goes first over the next connection. Closed again in its place, it is its station
+    // that is silent.
     if (write)
     {
       noteLostWrite(reply.finished_at, inverter, reply.error_id);

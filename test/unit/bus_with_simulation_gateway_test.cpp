@@ -201,6 +201,33 @@ TEST_F(BehindAGateway, aCloseInPlaceOfTheAnswerOfADeadUnitStopsNobodyElse)
   EXPECT_FALSE(bus_->status(A).locked);
 }
 
+TEST_F(BehindAGateway, aStopThatClosesEachConnectionStopsNobodyElse)
+{
+  start();
+  bus_->gateway().behaviour.close_on_silence = true;
+  bus_->gateway().behaviour.silence = 0.2;
+  bus_->settleIn(20.0);
+  bus_->stream(A, 20.0, 0.1, 300.0);
+  bus_->stream(B, 20.0, 0.1, 2.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  // Away, and to be stopped before any read of it got lost.
+  bus_->world("b offline");
+  const auto box = bus_->stop(B);
+  for (int tenth = 0; tenth < 400; ++tenth)
+  {
+    bus_->run(0.1);
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << tenth;
+    ASSERT_TRUE(online(A)) << tenth;
+    ASSERT_LT(toSeconds(bus_->now() - bus_->status(A).stamp), 1.5) << tenth;
+    ASSERT_TRUE(tenth < 30 || !online(B)) << tenth;
+  }
+  EXPECT_FALSE(bus_->wait(box, 30.0).success);
+  bus_->world("b online");
+  EXPECT_TRUE(bus_->runUntil(30.0, [&] { return online(B) && !bus_->status(B).stop_active; }));
+  EXPECT_EQ(bus_->motor("b", "run_coil"), 0.0);
+}
+
 TEST_F(BehindAGateway, aConnectionThatIsClosedAgainAndAgainIsTriedOnceInTwoSeconds)
 {
   for (const bool at_once : { true, false })

@@ -570,7 +570,9 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
 void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
 {
   Inverter& inverter = *inverters_[current.inverter];
-  if (!current.resync)
+  // What waited in a gateway behind an older request says nothing of this inverter.
+  const bool says_nothing = behind_another_ && !alive(reply);
+  if (!current.resync && !says_nothing)
   {
     inverter.liveness.noteRead(line_.cost(current.request, Duration{ 0 }), reply);
   }

@@ -107,6 +107,24 @@ TEST_F(BehindAGateway, aDeadUnitStopsNobodyElse)
   }
 }
 
+/// It swallows a request now and then: nothing else is sent for gateway_timeout, which is longer than the 2 s of 8.15.
+TEST_F(BehindAGateway, oneRequestThatIsSwallowedStopsNobody)
+{
+  start(twoDrives("gateway_timeout: 3.0\n"));
+  turn(A, "a");
+  for (int time = 0; time < 10; ++time)
+  {
+    bus_->gateway().behaviour.swallow = 1;
+    for (int tenth = 0; tenth < 100; ++tenth)
+    {
+      bus_->run(0.1);
+      ASSERT_TRUE(online(A)) << time << " " << tenth;
+      ASSERT_TRUE(online(B)) << time << " " << tenth;
+    }
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << time;
+  }
+}
+
 TEST_F(BehindAGateway, aStopGoesAtOnceAndIsConfirmedAfterTheBlock)
 {
   start();

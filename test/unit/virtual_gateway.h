@@ -50,6 +50,8 @@ public:
     bool close_at_first_byte = false;
     /// Takes everything and carries out nothing.
     bool mute = false;
+    /// The next so many requests are neither carried out nor answered.
+    int swallow = 0;
     /// Nobody listens.
     bool gone = false;
     /// [s] until a connection stands.
@@ -191,6 +193,11 @@ public:
     if (behaviour.close_at_first_byte)
     {
       closeByItself();
+      return true;
+    }
+    if (behaviour.swallow > 0)
+    {
+      --behaviour.swallow;
       return true;
     }
     if (!behaviour.mute)

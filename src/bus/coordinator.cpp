@@ -416,8 +416,9 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     block = inverter.refresh.next(now);
     current.request = inverter.drive.read(inverter.config.node, block);
   }
-  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force.
-  if (!block.chosen.empty() && inverter.mayRepeatWords(now))
+  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force; never through a gateway,
+  // which could carry them out when everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11).
+  if (!configuration_.bus.gateway && !block.chosen.empty() && inverter.mayRepeatWords(now))
   {
     const std::vector<drive::Word> words = inverter.movement.wordsInForce();
     const wire::Request both =

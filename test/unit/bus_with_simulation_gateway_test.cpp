@@ -85,6 +85,27 @@ TEST_F(BehindAGateway, everythingWorks)
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
 }
 
+/// A gateway may carry it out late: a refresh that repeats RUN is none behind one.
+TEST_F(BehindAGateway, aSettledCommandIsRefreshedByReadsAlone)
+{
+  start(
+      "port: tcp://virtual\n"
+      "defaults: {command_timeout: 5.0}\n"
+      "scan_list:\n"
+      "  - {name: a, node: 1, drive: toshiba_vfs15}\n"
+      "simulation:\n"
+      "  a: {parameters: {F870: 1, F871: 3, F875: 1, F876: 2, F877: 3, F878: 4, F879: 14}}\n");
+  bus_->settleIn(20.0);
+  bus_->stream(A, 20.0, 0.1, 30.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  bus_->run(1.0);
+  bus_->clearFrames();
+  bus_->run(5.0);
+  EXPECT_EQ(bus_->count("01 17"), 0U);
+  EXPECT_EQ(bus_->count("01 06") + bus_->count("01 10"), 0U);
+  EXPECT_GT(bus_->count("01 03 18 75 00 05"), 20U) << "the block";
+}
+
 TEST_F(BehindAGateway, aDeadUnitStopsNobodyElse)
 {
   for (const double silence : { 0.5, 1.0, 2.2 })

@@ -304,7 +304,8 @@ Pick Coordinator::pickShutdown(TimePoint now)
   }
   for (const auto& inverter : inverters_)
   {
-    const bool one_frame = inverter->stop.pending() && inverter->silent() && !shutdown_tried_[inverter->index];
+    const bool one_frame =
+        inverter->stop.pending() && inverter->silent() && !shutdown_tried_[inverter->index] && !untested(*inverter);
     if (best == nullptr && one_frame)
     {
       best = inverter.get();
@@ -329,13 +330,13 @@ Pick Coordinator::pickShutdown(TimePoint now)
   return pick;
 }
 
-/// When the next frame of a stop may go that waits for a gateway.
+/// When the next frame of a live inverter's stop may go that waits for a gateway; one that is silent has had its own.
 TimePoint Coordinator::nextStop(TimePoint now) const
 {
   TimePoint at = TimePoint::max();
   for (const auto& inverter : inverters_)
   {
-    at = inverter->stop.pending() ? std::min(at, stopNotBefore(now, *inverter)) : at;
+    at = inverter->stop.pending() && !inverter->silent() ? std::min(at, stopNotBefore(now, *inverter)) : at;
   }
   return at;
 }
@@ -674,14 +675,15 @@ void Coordinator::sent(TimePoint now)
       inverter.stop.forgetConfirmation();
     }
   }
-  if (current_->purpose == Purpose::Broadcast)
+  if (current_->purpose == Purpose::Broadcast && !gateway_.active())
   {
     noteStopLatency(now - broadcast_requested_);
   }
   if (current_->purpose == Purpose::StopFrame && !current_->resync)
   {
     const auto latency = inverter.stop.sent(now);
-    // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port that was gone, is no measure of the scheduler's latency.
+    // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port
+    // that was gone, is no measure of the scheduler's latency.
     if (latency && !current_->pick.probe && !gateway_.active())
     {
       noteStopLatency(*latency);

@@ -44,6 +44,8 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
       return current.resync || !current.moves ? GatewayRisk::None : GatewayRisk::Motion;
     case Purpose::Refresh:
     case Purpose::KeepAlive:
+    case Purpose::Setting:
+      // A setting may have taken the refresh's turn.
       return current.pick.deadline ? GatewayRisk::Refresh : GatewayRisk::None;
     default:
       return GatewayRisk::None;

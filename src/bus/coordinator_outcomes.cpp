@@ -480,13 +480,15 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
   }
   RunningJob& running = found->second;
   Inverter& inverter = *inverters_[current.inverter];
-  if (repeat(running.tries, reply))
+  const bool reads =
+      running.job->kind() == CommandKind::ReadParameter || running.job->kind() == CommandKind::ReadFaults;
+  // What was under way when the connection was closed may have been carried out (contract, 8.9).
+  const bool once = reply.connection_closed && !reads;
+  if (!once && repeat(running.tries, reply))
   {
     finishExchange(current, reply, true);
     return;
   }
-  const bool reads =
-      running.job->kind() == CommandKind::ReadParameter || running.job->kind() == CommandKind::ReadFaults;
   if (reads && reply.outcome == wire::Outcome::Ok)
   {
     inverter.liveness.dataRead();
@@ -874,7 +876,7 @@ bool Coordinator::shutdownDone(TimePoint now)
   }
   return std::none_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
     const bool untried = !connected_ || !inverter->silent() || !shutdown_tried_[inverter->index];
-    return (inverter->stop.pending() && untried) || (connected_ && releaseDue(*inverter));
+    return (inverter->stop.pending() && untried && !untested(*inverter)) || (connected_ && releaseDue(*inverter));
   });
 }
 

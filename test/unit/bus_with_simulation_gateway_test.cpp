@@ -401,6 +401,43 @@ TEST_F(BehindAGateway, aRunThatWasUnderWayWhenItsConnectionWasLostIsStopped)
   }
 }
 
+TEST_F(BehindAGateway, shutdownSleepsWhileAStopWaitsInTheGateway)
+{
+  start(twoDrives("gateway_timeout: 0.5\n"));
+  bus_->gateway().behaviour.silence = 0.4;
+  turn(A, "a");
+  bus_->stream(B, 20.0, 0.1, 3.0);
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B) && bus_->status(B).stop_active; }));
+  bus_->run(10.0);
+  // The gateway is silent for longer than the shutdown takes.
+  bus_->gateway().behaviour.mute = true;
+  bus_->coordinator().beginShutdown(bus_->now());
+  const TimePoint begun = bus_->now();
+  std::size_t rounds = 0;
+  EXPECT_TRUE(bus_->runUntil(20.0, [&] { return ++rounds > 2000 || bus_->coordinator().shutdownDone(bus_->now()); }));
+  EXPECT_LT(rounds, 500U);
+  EXPECT_LE(toSeconds(bus_->now() - begun), 10.1);
+  EXPECT_EQ(bus_->coordinator().endShutdown().size(), 2U) << "both are named";
+}
+
+TEST_F(BehindAGateway, nothingIsRepeatedThatAClosedConnectionMayHaveCarriedOut)
+{
+  start();
+  bus_->settleIn(20.0);
+  // The gateway takes the write (F002 = 1103, one word), and ends the connection before it answers.
+  bus_->gateway().behaviour.hold = { 0x01, 0x10, 0x11, 0x02 };
+  bus_->gateway().behaviour.hold_time = 1.0;
+  const auto box = bus_->writeParameter(A, "F002", 12.0, false);
+  onHold([this] { bus_->gateway().hangUp(); });
+  const bus::Answer answer = bus_->wait(box);
+  EXPECT_FALSE(answer.success);
+  EXPECT_EQ(answer.error_id, wire::ERROR_TIMEOUT);
+  bus_->run(3.0);
+  EXPECT_EQ(bus_->count("01 10 11 02"), 1U);
+}
+
 TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)
 {
   start();

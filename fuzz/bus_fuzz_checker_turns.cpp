@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
+#include <cmath>
 #include <string>
 
 #include "bus_fuzz_checker.h"
@@ -16,6 +17,8 @@ namespace
 constexpr double BARRED_S = 3.0;
 // Of a drive's own time-out: before it has passed, the drive is not late yet, but it has the next turn.
 constexpr double NEAR_SHARE = 0.95;
+// Coarser than the rounding of every brand.
+constexpr double SET_POINT_STEP_HZ = 0.051;
 }  // namespace
 
 /// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent; or its
@@ -27,7 +30,10 @@ bool Checker::waits(TimePoint now, std::size_t index) const
   {
     return false;
   }
-  const bool commanded = lane.permit && !lane.settled && lane.run_copies == 0 && lane.set_copies == 0 &&
+  // Commanded once more what is in force already: there is nothing to send.
+  const bool in_force = lane.run_answered && lane.run_reverse == (lane.hertz < 0.0) && lane.held &&
+                        std::fabs(*lane.held - std::fabs(lane.hertz)) < SET_POINT_STEP_HZ;
+  const bool commanded = lane.permit && !lane.settled && !in_force && lane.run_copies == 0 && lane.set_copies == 0 &&
                          !lane.set_answered && lane.accepted_at < turn_began_;
   const double timeout = scene_.inverters[index].drive_timeout;
   const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&

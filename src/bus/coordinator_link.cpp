@@ -16,8 +16,8 @@ namespace
 {
 // Contract, 8.9: one line a minute.
 constexpr double RESUMED_LOG_PERIOD_S = 60.0;
-// How often a stop is sent over a telnet connection before it is closed.
-constexpr unsigned TELNET_STOP_ATTEMPTS = 2;
+// Failed attempts at a stop over a telnet connection before it is closed: a second one would wait for the probes' turn.
+constexpr unsigned TELNET_STOP_ATTEMPTS = 1;
 // How soon a write is looked at again that waits for the first valid reply of a connection.
 constexpr double UNPROVEN_PERIOD_S = 0.02;
 // Contract, 8.10: the link is not renewed within a stop's first tries.
@@ -60,7 +60,7 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   {
     return;
   }
-  gateway_.sent(reply.sent_at, reply.ticket, current.inverter, riskOf(current));
+  gateway_.sent(reply.sent_at, reply.ticket, current.inverter, riskOf(current), current.pick.probe);
   const bool answered = isAnswered(reply) || reply.gateway_code != 0;
   behind_another_ = !answered && gateway_.behindAnother(reply.ticket);
   if (answered)
@@ -372,12 +372,21 @@ void Coordinator::reopening(TimePoint now)
   gateway_.connectionEnded(now);
 }
 
-/// Only stops go over a telnet connection, and then it is closed.
-bool Coordinator::telnetOver(TimePoint now) const
+/// Only stops go over a telnet connection, and then it is closed. Whatever runs is stopped over it, as far as it carries.
+bool Coordinator::telnetOver(TimePoint now)
 {
-  return line_.telnetFound() && std::none_of(inverters_.begin(), inverters_.end(), [now](const auto& inverter) {
-           return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
-         });
+  if (!line_.telnetFound())
+  {
+    return false;
+  }
+  if (!telnet_)
+  {
+    telnet_ = true;
+    loseEverybody(now, wire::ERROR_PORT_LOST);
+  }
+  return std::none_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
+    return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
+  });
 }
 
 void Coordinator::closedForTelnet(TimePoint now)

@@ -709,7 +709,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
   link_.answered();
   const auto request = gateway_.answeredLate(now, late.ticket);
   const bool alone = !gateway_.active() || (request && request->alone);
-  if (request && request->alone && inverters_[request->inverter]->offline())
+  if (request && request->alone && request->probe)
   {
     scheduler_->chargeProbe(now, gateway_.block());
   }
@@ -759,6 +759,7 @@ void Coordinator::portOpened(TimePoint now)
   }
   ever_opened_ = true;
   link_.opened(now);
+  telnet_ = false;
   const bool same = connection_.resuming();
   // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
   scheduler_->restartCycle(now, !same && connection_.closedUnused() == 0);

@@ -79,9 +79,10 @@ Coordinator::~Coordinator() = default;
 
 // --- time ------------------------------------------------------------------------------------------------------------
 
-void Coordinator::tick(TimePoint now)
+bool Coordinator::tick(TimePoint now)
 {
   watchDeadMen(now);
+  const bool lost_one = watchStatuses(now);
   for (const std::string& line : refusals_.takeLines(now))
   {
     log(Level::Warn, line);
@@ -89,6 +90,7 @@ void Coordinator::tick(TimePoint now)
   expireJobs(now);
   finishStopCalls(now);
   publishSlowly(now);
+  return lost_one;
 }
 
 void Coordinator::watchDeadMen(TimePoint now)
@@ -102,6 +104,35 @@ void Coordinator::watchDeadMen(TimePoint now)
                   refusals_.deadManReason(inverter->index, inverter->config.command_timeout));
     }
   }
+}
+
+/// Contract, 8.15: without a complete status for too long an inverter is offline, whatever else it answers.
+bool Coordinator::watchStatuses(TimePoint now)
+{
+  if (!connected_ || shutting_down_)
+  {
+    return false;
+  }
+  bool lost_one = false;
+  for (const auto& inverter : inverters_)
+  {
+    if (inverter->overdue(now, refreshPeriod(*inverter)))
+    {
+      const std::uint16_t error_id = inverter->liveness.lastError();
+      inverter->goOffline(error_id);
+      wentOffline(now, *inverter);
+      lost_one = true;
+    }
+  }
+  return lost_one;
+}
+
+/// The longest time between two of its refreshes as the configuration has it, and as a gateway may stretch it.
+Duration Coordinator::refreshPeriod(const Inverter& inverter) const
+{
+  const Duration period = budget_.cycle + seconds(configuration_.bus.interval);
+  const int cycles = inverter.view(opened_at_, budget_.deadline_margin).at_rest ? configuration_.bus.idle_divisor : 1;
+  return cycles * period + (gateway_.active() ? gateway_.block() : Duration::zero());
 }
 
 void Coordinator::expireJobs(TimePoint now)
@@ -131,10 +162,9 @@ void Coordinator::publishSlowly(TimePoint now)
 {
   for (const auto& inverter : inverters_)
   {
-    const bool away = inverter->offline() || inverter->unreadSinceReturn();
     // Behind a gateway that is kept busy no refresh comes, but locks and stops are to be seen.
     const bool held_up = !gateway_.free(now) && inverter->known();
-    if ((away || held_up) && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
+    if ((inverter->offline() || held_up) && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
     {
       publish(now, *inverter);
     }
@@ -204,7 +234,12 @@ Pick Coordinator::pick(TimePoint now)
 
 std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint& wake)
 {
-  tick(now);
+  if (tick(now))
+  {
+    // Users hear of an inverter that is offline before it is probed.
+    wake = now;
+    return std::nullopt;
+  }
   for (int attempt = 0; attempt < MOST_EMPTY_PICKS; ++attempt)
   {
     std::optional<Current> current = composeBroadcast();
@@ -261,7 +296,7 @@ Pick Coordinator::pickShutdown(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     const bool may_go = inverter->stop.pending() && stopNotBefore(now, *inverter) <= now;
-    const bool live = may_go && !inverter->offline();
+    const bool live = may_go && !inverter->silent();
     if (live && (best == nullptr || goesBefore(inverter->stop, best->stop)))
     {
       best = inverter.get();
@@ -269,7 +304,7 @@ Pick Coordinator::pickShutdown(TimePoint now)
   }
   for (const auto& inverter : inverters_)
   {
-    const bool one_frame = inverter->stop.pending() && inverter->offline() && !shutdown_tried_[inverter->index];
+    const bool one_frame = inverter->stop.pending() && inverter->silent() && !shutdown_tried_[inverter->index];
     if (best == nullptr && one_frame)
     {
       best = inverter.get();
@@ -320,7 +355,7 @@ std::optional<Coordinator::Current> Coordinator::compose(TimePoint now, const Pi
   switch (pick.what)
   {
     case Pick::What::Stop:
-      if (shutting_down_ && inverter.offline() && inverter.stop.written())
+      if (shutting_down_ && inverter.silent() && inverter.stop.written())
       {
         // Rule 4.4: its one frame is the stop itself.
         inverter.stop.writeAgain();
@@ -369,6 +404,10 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
   }
   current.purpose = Purpose::Refresh;
   const bool resync = inverter.loopback.usable() && inverter.drive.loopback(inverter.config.node, 0);
+  if (inverter.refresh.begins())
+  {
+    inverter.liveness.turn(now);
+  }
   drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);
   while (!resync && !line_.mayAsk(current.request) && inverter.refresh.skipSlow())
@@ -519,7 +558,7 @@ Duration Coordinator::probeTimeout(const Inverter& inverter) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
   const auto dead = std::count_if(inverters_.begin(), inverters_.end(),
-                                  [](const std::unique_ptr<Inverter>& other) { return other->offline(); });
+                                  [](const std::unique_ptr<Inverter>& other) { return other->silent(); });
   // Staggered by index, so that no round has more than a few full ones.
   const std::size_t every = dead > 1 ? FULL_PROBE_EVERY_OF_MANY : FULL_PROBE_EVERY;
   if ((inverter.probes + inverter.index) % every == every - 1)
@@ -544,7 +583,7 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   }
   const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
   current.may_be_late = stop_write;
-  const bool last_frame = shutting_down_ && inverter.offline();
+  const bool last_frame = shutting_down_ && inverter.silent();
   if (stop_write && (last_frame || !inverter.stop.wantsClearLine()))
   {
     return true;

@@ -88,9 +88,10 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     noteLink(reply);
     noteConnection(reply.finished_at, current, reply);
   }
-  if (current.request.expects_reply && alive(reply) && inverter.answered(reply))
+  inverter.noteCost(current.pick.probe, reply.outcome, probePrice(current, reply));
+  if (current.request.expects_reply && alive(reply))
   {
-    log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
+    inverter.answered(reply);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || alive(reply)))
@@ -126,6 +127,10 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     case Purpose::KeepAlive:
       // One that is lost gives the turn away.
       finishExchange(current, reply, alive(reply));
+      if (reply.outcome == wire::Outcome::Ok)
+      {
+        inverter.liveness.dataRead();
+      }
       if (!alive(reply))
       {
         noteLost(reply.finished_at, inverter, reply.error_id);
@@ -135,11 +140,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       doneSetting(current, reply);
       break;
     default:
-      if (inverter.offline())
-      {
-        // Not the port that was gone before.
-        inverter.noteExchangeError(reply.error_id);
-      }
+      inverter.noteProbed(reply);
       finishExchange(current, reply, false);
       break;
   }
@@ -170,6 +171,28 @@ void Coordinator::noteLost(TimePoint now, Inverter& inverter, std::uint16_t erro
   if (!behind_another_ && inverter.failed(now, error_id))
   {
     wentOffline(now, inverter);
+    return;
+  }
+  failTrial(now, inverter, error_id);
+}
+
+/// It answers, but not what counts.
+void Coordinator::noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  if (inverter.refusedStatus(error_id))
+  {
+    wentOffline(now, inverter);
+    return;
+  }
+  failTrial(now, inverter, error_id);
+}
+
+/// An offline inverter that has answered has shown no status after all: what that has cost is paid by the probes.
+void Coordinator::failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_id)
+{
+  if (inverter.onTrial() && !shutting_down_)
+  {
+    scheduler_->chargeProbe(now, inverter.endTrial(error_id));
   }
 }
 
@@ -179,8 +202,10 @@ void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t
   if (!behind_another_ && inverter.failed(now, error_id, true))
   {
     wentOffline(now, inverter);
+    return;
   }
-  if (inverter.needsRead())
+  failTrial(now, inverter, error_id);
+  if (!inverter.offline() && inverter.liveness.needsRead())
   {
     scheduler_->readSoon(inverter.index);
   }
@@ -189,7 +214,7 @@ void Coordinator::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t
 void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
 {
   scheduler_->eraseVelocity(inverter.index);
-  failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE));
+  failJobs(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason());
   if (connected_)
   {
     log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(), inverter.config.name);
@@ -247,12 +272,21 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     inverter.lost_writes.acknowledged();
   }
+  if (!write && !current.resync && reply.outcome == wire::Outcome::Ok)
+  {
+    inverter.liveness.dataRead();
+  }
   if (progress == StopJob::Progress::Confirmed)
   {
     stopConfirmed(reply.finished_at, inverter);
   }
   if (alive(reply))
   {
+    if (reply.outcome == wire::Outcome::Exception)
+    {
+      // An offline inverter's stop is its probe, however politely it is refused.
+      failTrial(reply.finished_at, inverter, reply.error_id);
+    }
     return;
   }
   if (write)
@@ -298,7 +332,8 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   const bool lost = !alive(reply);
   // A loop-back that was lost writes nothing.
   const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
-  const bool again = lost && inverter.lost_writes.tryAgain() && !too_many;
+  // A gateway that says so itself has tried already.
+  const bool again = lost && inverter.lost_writes.tryAgain() && !too_many && reply.gateway_code == 0;
   if (again && !cancelled)
   {
     // The other members of a group go on without it.
@@ -448,6 +483,12 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
     finishExchange(current, reply, true);
     return;
   }
+  const bool reads =
+      running.job->kind() == CommandKind::ReadParameter || running.job->kind() == CommandKind::ReadFaults;
+  if (reads && reply.outcome == wire::Outcome::Ok)
+  {
+    inverter.liveness.dataRead();
+  }
   const Job::Progress progress = alive(reply) ? running.job->done(reply) : running.job->lost(reply);
   doneStep(reply.finished_at, current);
   finishExchange(current, reply, false);
@@ -527,9 +568,17 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
 void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
 {
   Inverter& inverter = *inverters_[current.inverter];
+  if (!current.resync)
+  {
+    inverter.liveness.noteRead(line_.cost(current.request, Duration{ 0 }), reply);
+  }
   if (alive(reply))
   {
     inverter.refresh_tries = 0;
+    if (reply.outcome == wire::Outcome::Ok)
+    {
+      inverter.liveness.dataRead();
+    }
     const bool more =
         reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
     if (reply.outcome == wire::Outcome::Ok && inverter.lost_writes.readAnswered())
@@ -548,14 +597,13 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
     }
     else if (!more)
     {
-      // Alive, but it refuses to tell: the last good values keep their stamp.
-      inverter.noteExchangeError(reply.error_id);
-      publish(reply.finished_at, inverter);
+      refusedStatus(reply, inverter);
     }
     return;
   }
   // One that has lost as many writes as make a drive offline is not asked twice.
-  if (!inverter.needsRead() && repeat(inverter.refresh_tries, reply))
+  const bool decided = inverter.offline() || inverter.liveness.needsRead();
+  if (!decided && repeat(inverter.refresh_tries, reply))
   {
     finishExchange(current, reply, true);
     return;
@@ -571,8 +619,26 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
   }
 }
 
+/// It answers, but refuses to tell: the last good values keep their stamp.
+void Coordinator::refusedStatus(const wire::Reply& reply, Inverter& inverter)
+{
+  if (inverter.refresh.takeRefusal() || inverter.offline())
+  {
+    noteRefusal(reply.finished_at, inverter, reply.error_id);
+  }
+  if (!inverter.offline() && inverter.known())
+  {
+    inverter.noteExchangeError(reply.error_id);
+    publish(reply.finished_at, inverter);
+  }
+}
+
 void Coordinator::judgeRefresh(TimePoint now, Inverter& inverter)
 {
+  if (!inverter.known())
+  {
+    log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
+  }
   const Judgement judgement = inverter.judge(now);
   if (judgement.tripped)
   {
@@ -608,7 +674,7 @@ void Coordinator::doneSetting(const Current& current, const wire::Reply& reply)
     return;
   }
   inverter.settled(reply.finished_at, reply);
-  const bool again = repeat(inverter.settings_tries, reply);
+  const bool again = !inverter.offline() && repeat(inverter.settings_tries, reply);
   finishExchange(current, reply, false);
   if (!again)
   {
@@ -656,16 +722,8 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
     {
       inverter->lateReply(*late.delay);
     }
-    if (inverter->offline())
-    {
-      wire::Reply sign_of_life;
-      sign_of_life.outcome = wire::Outcome::Ok;
-      sign_of_life.finished_at = now;
-      sign_of_life.turnaround =
-          std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout));
-      inverter->answered(sign_of_life);
-      log(Level::Ok, inverter->config.name + ": online (its reply came late)", inverter->config.name);
-    }
+    // A probe that was given up early: worth asking for the status, at the probes' cost.
+    inverter->beginTrial(late.delay.value_or(Duration::zero()));
   }
 }
 
@@ -709,6 +767,10 @@ void Coordinator::portOpened(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     inverter->refresh_not_before = now;
+    if (!inverter->known())
+    {
+      inverter->liveness.watchFrom(now);
+    }
   }
 }
 
@@ -807,7 +869,7 @@ bool Coordinator::shutdownDone(TimePoint now)
     return true;
   }
   return std::none_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
-    const bool untried = !connected_ || !inverter->offline() || !shutdown_tried_[inverter->index];
+    const bool untried = !connected_ || !inverter->silent() || !shutdown_tried_[inverter->index];
     return (inverter->stop.pending() && untried) || (connected_ && releaseDue(*inverter));
   });
 }

@@ -55,7 +55,8 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = judged.text.empty() ? errorText(judged.error_id) : judged.text;
     return judged.error_id;
   }
-  if (inverter.offline())
+  // That it is the wrong drive says more than that it tells no status (the order of section 2).
+  if (inverter.offline() && inverter.settings.identity() != Identity::Wrong)
   {
     judged.error_id = ERROR_OFFLINE;
   }
@@ -487,7 +488,8 @@ std::string Coordinator::refusalText(const Inverter& inverter, std::uint16_t err
 /// A brand or model that the profile is not for: what it would do with these requests, nobody knows.
 bool Coordinator::refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback)
 {
-  const std::string why = inverter.offline() ? "" : inverter.wrongDrive();
+  const bool wrong = inverter.settings.identity() == Identity::Wrong;
+  const std::string why = inverter.offline() && !wrong ? "" : inverter.wrongDrive();
   if (!why.empty() && !shutting_down_)
   {
     refuseCall(callback, inverter.settings.identity() == Identity::Wrong ? ERROR_NOT_ARMED : ERROR_OFFLINE, why);
@@ -564,7 +566,8 @@ bool Coordinator::refuseJob(std::size_t index, const AnswerCallback& callback)
   if (inverter.offline() || !inverter.known())
   {
     refuseCall(callback, ERROR_OFFLINE,
-               inverter.offline() ? errorText(ERROR_OFFLINE) : "the inverter has not answered yet");
+               inverter.offline() ? errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason()
+                                  : "the inverter has not answered yet");
     return true;
   }
   return false;

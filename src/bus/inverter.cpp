@@ -27,6 +27,8 @@ constexpr double DEVIATION_PATIENCE_S = 2.0;
 constexpr double RUN_EVIDENCE_S = 0.5;
 constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
+// 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
+constexpr double MOST_PAID_FOR_DATA_S = 0.135;
 
 std::string listed(const std::vector<int>& codes)
 {
@@ -43,6 +45,13 @@ std::string hex(std::uint16_t value)
   char text[8];
   std::snprintf(text, sizeof text, "0x%04X", value);
   return text;
+}
+
+/// The drive's own no, not silence or damage.
+bool isRefusal(std::uint16_t error_id)
+{
+  return error_id != 0 && error_id != wire::ERROR_TIMEOUT && error_id != wire::ERROR_DAMAGED &&
+         error_id != wire::ERROR_PORT_LOST;
 }
 
 bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, double patience)
@@ -71,6 +80,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , refresh(drive, config.node)
   , settings(drive, config.node)
   , lost_writes(retries, offline_after)
+  , liveness(offline_after)
   , offline_after_(offline_after)
   , exchanges_without_data_(offline_after)
 {
@@ -78,79 +88,151 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
 
 // --- link ------------------------------------------------------------------------------------------------------------
 
-bool Inverter::answered(const wire::Reply& reply)
+void Inverter::answered(const wire::Reply& reply)
 {
-  const bool back = offline_ || !ever_answered_;
   last_reply_ = reply.finished_at;
   ever_answered_ = true;
-  failures_ = 0;
-  read_failed_ = false;
-  exchange_error_ = 0;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
   probes = 0;
   if (offline_)
   {
-    offline_ = false;
-    loopback.tryAgain();
-    ++returns_;
+    probed_ = false;
+    on_trial_ = true;
+    return;
   }
-  return back;
+  exchange_error_ = 0;
+}
+
+void Inverter::beginTrial(Duration delay)
+{
+  if (silent() && probed_)
+  {
+    slowest_reply_ = std::max(slowest_reply_, std::min(delay, seconds(config.response_timeout)));
+    on_trial_ = true;
+    probed_ = false;
+    // That probe is paid for.
+    trial_cost_ = Duration::zero();
+    trial_waste_ = Duration::zero();
+  }
+}
+
+bool Inverter::onTrial() const
+{
+  return on_trial_;
+}
+
+Duration Inverter::endTrial(std::uint16_t error_id)
+{
+  on_trial_ = false;
+  refresh_tries = 0;
+  settings_tries = 0;
+  forgetDrive(!isRefusal(error_id));
+  // What was lost or refused is paid for in full, what brought something as far as it does not delay the next probe for long.
+  return std::max(trial_waste_, std::min(trial_cost_, seconds(MOST_PAID_FOR_DATA_S)));
+}
+
+bool Inverter::silent() const
+{
+  return offline_ && !on_trial_;
+}
+
+void Inverter::noteCost(bool probe, wire::Outcome outcome, Duration cost)
+{
+  probed_ = probed_ || (offline_ && probe);
+  const bool wasted = outcome != wire::Outcome::Ok;
+  trial_cost_ = (on_trial_ ? trial_cost_ : Duration::zero()) + cost;
+  trial_waste_ = (on_trial_ ? trial_waste_ : Duration::zero()) + (wasted ? cost : Duration::zero());
 }
 
 bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
-  if (now < silence_until_)
+  if (now < silence_until_ || offline_)
   {
     return false;
   }
   exchange_error_ = error_id;
-  read_failed_ = read_failed_ || !write;
-  // One that came back and has shown no status yet is still offline to everybody: its next silence is no news.
-  const bool patience = (++failures_ < offline_after_ || !read_failed_) && !unreadSinceReturn();
-  if (patience || offline_)
+  if (liveness.lost(write))
   {
-    return false;
+    goOffline(error_id);
   }
-  goOffline(error_id);
-  return true;
+  return offline_;
+}
+
+bool Inverter::refusedStatus(std::uint16_t error_id)
+{
+  if (!offline_ && liveness.refused())
+  {
+    goOffline(error_id);
+    return true;
+  }
+  return false;
+}
+
+bool Inverter::overdue(TimePoint now, Duration period) const
+{
+  return !offline_ && liveness.overdue(now, period);
 }
 
 void Inverter::goOffline(std::uint16_t error_id)
 {
+  // What refuses to tell its status has been there all the time: what it is need not be asked again.
+  const bool refused = isRefusal(error_id);
   offline_ = true;
+  on_trial_ = false;
+  probed_ = false;
   known_ = false;
-  leftover_judged_ = false;
-  early_trip_ = false;
   exchange_error_ = error_id;
   command_error_.wentOffline();
+  velocityConfirmed();
+  interlock.offline();
+  stop.forgetConfirmation();
+  movement.drop();
+  unexpected_motion_ = false;
+  reset_active = false;
+  // From now on nothing of it is answered, and that is what users are told.
+  lost_writes.lower();
+  forgetDrive(!refused);
+}
+
+/// What was read of it counts no more; after silence another drive may stand there, or it may have been switched off and on.
+void Inverter::forgetDrive(bool after_silence)
+{
+  leftover_judged_ = false;
+  early_trip_ = false;
   run_shown_at_.reset();
   run_proven_ = false;
   setup_open = false;
   block_note_.clear();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
-  stop.forgetConfirmation();
-  interlock.offline();
-  movement.drop();
   movement.forgetWords();
   refresh.forget();
-  settings.restart();
+  if (after_silence)
+  {
+    settings.restart();
+  }
   operation_seen_ = false;
   operation_off_since_.reset();
-  unexpected_motion_ = false;
-  reset_active = false;
-  // From now on nothing of it is answered, and that is what users are told.
-  lost_writes.lower();
+}
+
+/// A complete status has come.
+void Inverter::noteBack()
+{
+  if (offline_)
+  {
+    offline_ = false;
+    on_trial_ = false;
+    exchange_error_ = 0;
+    loopback.tryAgain();
+    ++returns_;
+  }
+  known_ = true;
+  ever_known_ = true;
 }
 
 bool Inverter::offline() const
 {
   return offline_;
-}
-
-bool Inverter::needsRead() const
-{
-  return !offline_ && failures_ >= offline_after_ && !read_failed_;
 }
 
 bool Inverter::known() const
@@ -163,14 +245,10 @@ bool Inverter::everKnown() const
   return ever_known_;
 }
 
-bool Inverter::unreadSinceReturn() const
-{
-  return !offline_ && !known_ && returns_ > 0;
-}
-
 void Inverter::expectSilence(TimePoint until)
 {
   silence_until_ = until;
+  liveness.watchFrom(until);
 }
 
 wire::Request Inverter::prepared(wire::Request request) const
@@ -189,7 +267,7 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 bool Inverter::connectDue(TimePoint now) const
 {
-  return !offline_ && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
+  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)
@@ -416,9 +494,9 @@ Judgement Inverter::judge(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
-  known_ = true;
+  noteBack();
+  liveness.complete(now);
   record.restart();
-  ever_known_ = true;
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
   const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
@@ -612,7 +690,7 @@ InverterStatus Inverter::status(TimePoint now) const
   status.model = settings.model();
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
-  status.communication_error = offline_ || unreadSinceReturn();
+  status.communication_error = offline_;
   if (!status.communication_error)
   {
     status.monitor = refresh.monitor(now);
@@ -631,7 +709,7 @@ InverterStatus Inverter::status(TimePoint now) const
 Obstacles Inverter::obstacles() const
 {
   Obstacles obstacles;
-  obstacles.offline = offline_ || unreadSinceReturn();
+  obstacles.offline = offline_;
   obstacles.stop_pending = interlock.stopPending();
   obstacles.reset_active = reset_active;
   obstacles.in_setup = inSetup();
@@ -672,10 +750,11 @@ void Inverter::showError(TimePoint now, InverterStatus& status) const
   }
 }
 
-/// In the drive's own words where it has answered.
+/// Why it is offline; else in the drive's own words where it has answered.
 std::string Inverter::exchangeText() const
 {
-  const std::string text = drive.exceptionText(exchange_error_);
+  const std::string why = offline_ && exchange_error_ != wire::ERROR_PORT_LOST ? liveness.reason() : "";
+  const std::string text = why.empty() ? drive.exceptionText(exchange_error_) : why;
   return text.empty() ? errorText(exchange_error_, gateway_code_) : text;
 }
 
@@ -709,6 +788,17 @@ void Inverter::acceptCommand()
 void Inverter::noteExchangeError(std::uint16_t error_id)
 {
   exchange_error_ = error_id;
+}
+
+void Inverter::noteProbed(const wire::Reply& reply)
+{
+  // One that is answered is no status: what was missing is still missing.
+  const bool port_is_back = exchange_error_ == wire::ERROR_PORT_LOST;
+  const bool answered = reply.outcome == wire::Outcome::Ok;
+  if (offline_ && (!answered || port_is_back))
+  {
+    exchange_error_ = answered ? wire::ERROR_TIMEOUT : reply.error_id;
+  }
 }
 
 std::string Inverter::onlineText() const
@@ -898,7 +988,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 {
   InverterView view;
   const drive::Monitor& monitor = refresh.fresh();
-  view.offline = offline_;
+  view.offline = silent();
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&

@@ -181,6 +181,7 @@ void Refresh::plan(TimePoint now)
   plan_.clear();
   position_ = 0;
   fault_planned_ = false;
+  run_read_ = false;
   scratch_ = drive::Monitor();
   scratch_sent_at_ = TimePoint::max();
   scratch_stamp_ = TimePoint();
@@ -233,6 +234,25 @@ void Refresh::planSlow(TimePoint now)
   }
 }
 
+bool Refresh::begins() const
+{
+  return position_ >= plan_.size();
+}
+
+bool Refresh::takeRefusal()
+{
+  const bool refused = run_refused_;
+  run_refused_ = false;
+  return refused;
+}
+
+/// Whether the motor runs stands in it: without such a word there is no status (contract, 8.15).
+bool Refresh::tellsRun(const Block& block) const
+{
+  return block.kind == Class::Fast &&
+         (carries(block.read, "run_seen") || carries(block.read, "operation") || carries(block.read, "running"));
+}
+
 const drive::ReadBlock& Refresh::next(TimePoint now)
 {
   asked_at_ = now;
@@ -267,9 +287,11 @@ bool Refresh::advance()
   {
     return true;
   }
-  if (scratch_stamp_ == TimePoint())
+  const bool tells_run =
+      std::any_of(blocks_.begin(), blocks_.end(), [this](const Block& block) { return tellsRun(block); });
+  if (scratch_stamp_ == TimePoint() || (tells_run && !run_read_))
   {
-    // Every read was refused: that is no status.
+    // Every read was refused, or every one that tells whether the motor runs: that is no status.
     failed();
     return false;
   }
@@ -307,6 +329,7 @@ bool Refresh::received(const wire::Reply& reply)
   block.last = reply.finished_at;
   block.ever = true;
   takeRunWords(block, reply);
+  run_read_ = run_read_ || tellsRun(block);
   if (block.kind == Class::Fast)
   {
     scratch_stamp_ = reply.finished_at;
@@ -358,9 +381,7 @@ bool Refresh::refused(const wire::Reply& reply)
   const std::vector<drive::ReadBlock> halves = splitBlock(drive_, blocks_[index].read);
   if (halves.size() < 2)
   {
-    blocks_[index].left_out_until = reply.finished_at + seconds(LEFT_OUT_S);
-    blocks_[index].values = drive::Monitor();
-    return advance();
+    return leaveOut(index, reply);
   }
   Block second = blocks_[index];
   second.read = halves[1];
@@ -370,6 +391,24 @@ bool Refresh::refused(const wire::Reply& reply)
   plan_.clear();
   position_ = 0;
   return true;
+}
+
+/// A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
+bool Refresh::leaveOut(std::size_t index, const wire::Reply& reply)
+{
+  Block& block = blocks_[index];
+  block.values = drive::Monitor();
+  const bool another = std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& other) {
+    return &other != &block && tellsRun(other) && reply.finished_at >= other.left_out_until;
+  });
+  if (tellsRun(block) && !another)
+  {
+    run_refused_ = true;
+    failed();
+    return false;
+  }
+  block.left_out_until = reply.finished_at + seconds(LEFT_OUT_S);
+  return advance();
 }
 
 bool Refresh::skipSlow()
@@ -387,6 +426,7 @@ bool Refresh::postpone()
   Block& block = blocks_[plan_[position_]];
   if (block.kind != Class::Slow)
   {
+    run_refused_ = tellsRun(block);
     failed();
     return false;
   }

@@ -153,9 +153,9 @@ std::vector<std::size_t> Scheduler::members(CommandId id) const
 
 void Scheduler::readSoon(std::size_t inverter)
 {
-  if (!isPutOff(inverter))
+  if (std::find(read_soon_.begin(), read_soon_.end(), inverter) == read_soon_.end())
   {
-    put_off_.push_back(inverter);
+    read_soon_.push_back(inverter);
   }
 }
 
@@ -263,7 +263,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
 
 void Scheduler::forgetOffline(const std::vector<InverterView>& views)
 {
-  for (auto* waiting : { &half_refreshed_, &put_off_ })
+  for (auto* waiting : { &half_refreshed_, &put_off_, &read_soon_ })
   {
     waiting->erase(
         std::remove_if(waiting->begin(), waiting->end(), [&](std::size_t index) { return views[index].offline; }),
@@ -321,6 +321,10 @@ Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterVie
 /// Everything but stops and what wants to stop.
 std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vector<InverterView>& views)
 {
+  if (const auto read = pickReadSoon(now, views))
+  {
+    return read;
+  }
   if (last_lost_)
   {
     // Who did not answer has no right to the next exchange, whatever it is for.
@@ -329,6 +333,22 @@ std::optional<Pick> Scheduler::chooseBehindStops(TimePoint now, const std::vecto
   }
   const auto going_on = chooseGoingOn(now, views);
   return going_on ? going_on : chooseInTurn(now, views);
+}
+
+/// Whether a drive is away decides over everybody's time.
+std::optional<Pick> Scheduler::pickReadSoon(TimePoint now, const std::vector<InverterView>& views) const
+{
+  const auto soon = std::find_if(read_soon_.begin(), read_soon_.end(), [&](std::size_t index) {
+    return index != last_inverter_ && views[index].refresh_not_before <= now;
+  });
+  if (soon == read_soon_.end())
+  {
+    return std::nullopt;
+  }
+  Pick pick;
+  pick.what = Pick::What::Refresh;
+  pick.inverter = *soon;
+  return pick;
 }
 
 std::optional<Pick> Scheduler::chooseForAnother(TimePoint now, const std::vector<InverterView>& views)
@@ -363,7 +383,7 @@ std::optional<Pick> Scheduler::goOnWithUnit(TimePoint now, const std::vector<Inv
   }
   const auto command = pickCommand(now, false);
   const bool another_one = command && command->command != last_command_;
-  return another_one && backgroundIsDue(views) ? std::nullopt : command;
+  return another_one && backgroundIsDue(now, views) ? std::nullopt : command;
 }
 
 /// The words of one status belong together.
@@ -403,9 +423,28 @@ bool Scheduler::deadlinesMayGo(const std::vector<InverterView>& views) const
   return deadlines_in_a_row_ < supervised;
 }
 
-bool Scheduler::backgroundIsDue(const std::vector<InverterView>& views) const
+/// One exchange earlier while commands wait: at the eighth it may be the turn of who had the last exchange.
+bool Scheduler::backgroundIsDue(TimePoint now, const std::vector<InverterView>& views) const
 {
-  return exchanges_without_background_ + 1 >= EXCHANGES_PER_BACKGROUND && pickBackground(views);
+  const auto background = pickBackground(views);
+  const unsigned exchange = exchanges_without_background_ + 1;
+  const bool early = exchange + 1 == EXCHANGES_PER_BACKGROUND && readyCommands(now) > 0;
+  return background && (exchange >= EXCHANGES_PER_BACKGROUND || (early && background->inverter != last_inverter_));
+}
+
+/// The long jobs' turn, but not for who had the last exchange while another one waits.
+std::optional<Pick> Scheduler::backgroundInTurn(TimePoint now, const std::vector<InverterView>& views)
+{
+  const auto background = pickBackground(views);
+  if (!background || background->inverter != last_inverter_)
+  {
+    return background;
+  }
+  const auto avoided = avoided_;
+  avoided_ = last_inverter_;
+  const auto other = pickCommand(now, false);
+  avoided_ = avoided;
+  return other ? other : background;
 }
 
 /// Commands and refreshes take turns, whatever goes between them because its time has come.
@@ -427,9 +466,9 @@ std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<Inv
     return deadline;
   }
   const auto background = pickBackground(views);
-  if (backgroundIsDue(views))
+  if (backgroundIsDue(now, views))
   {
-    return background;
+    return backgroundInTurn(now, views);
   }
   const auto probe = pickProbe(now, views);
   if (probe && probe->what == Pick::What::Stop)
@@ -745,7 +784,8 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
 
 void Scheduler::chargeProbe(TimePoint now, Duration cost)
 {
-  next_probe_ = now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0));
+  next_probe_ =
+      std::max(next_probe_, now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0)));
 }
 
 void Scheduler::doneCommand(const Pick& pick, bool more)
@@ -772,6 +812,7 @@ void Scheduler::doneRefresh(const Pick& pick, bool more, bool answered)
                                                 half_refreshed_.end();
   commands_since_turn_ = by_deadline ? commands_since_turn_ : 0;
   silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
+  read_soon_.erase(std::remove(read_soon_.begin(), read_soon_.end(), pick.inverter), read_soon_.end());
   const bool was_put_off = isPutOff(pick.inverter);
   put_off_.erase(std::remove(put_off_.begin(), put_off_.end(), pick.inverter), put_off_.end());
   cycle_first_ = was_put_off && !(more && answered);

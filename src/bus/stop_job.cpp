@@ -230,6 +230,7 @@ void StopJob::cancel()
 void StopJob::forgetConfirmation()
 {
   confirmed_ = false;
+  repeats_ = 0;
 }
 
 std::uint16_t StopJob::lastError() const

@@ -1087,9 +1087,29 @@ TEST(Scheduler, readThatIsWantedSoonWaitsForNoInterval)
   ASSERT_EQ(line.next().what, Pick::What::Nothing);
   line.scheduler.readSoon(1);
   line.scheduler.readSoon(1);
-  EXPECT_EQ(VirtualLine::name(line.next()), "R1");
-  line.finish(line.next());
+  line.stop(0);
+  EXPECT_THAT(line.exchanges(3), ElementsAre("S0", "S0", "R1"));
   EXPECT_EQ(line.next().what, Pick::What::Nothing);
+}
+
+TEST(Scheduler, readThatIsWantedSoonGoesBeforeDeadlines)
+{
+  VirtualLine line(3);
+  line.serve_within = { { 0, Duration{ 0 } }, { 1, Duration{ 0 } } };
+  line.views[0].serve_by = line.views[1].serve_by = at(0);
+  line.exchanges(5);
+  line.scheduler.readSoon(2);
+  EXPECT_EQ(line.exchange(), "R2");
+}
+
+TEST(Scheduler, deadlinesThatCannotBeMetStarveNobodyWhileAStopInsists)
+{
+  VirtualLine line(4);
+  line.dead.insert(3);
+  line.stop(3);
+  line.serve_within = { { 0, Duration{ 0 } }, { 1, Duration{ 0 } } };
+  line.views[0].serve_by = line.views[1].serve_by = at(0);
+  EXPECT_THAT(line.exchanges(30), Contains("R2"));
 }
 
 TEST(Scheduler, loneInverterRepeatsItsLostReadAtOnce)
@@ -1122,6 +1142,21 @@ TEST(Scheduler, deadInverterNeverHasTwoExchangesInARow)
   EXPECT_EQ(most, 1U);
   EXPECT_THAT(order, Contains("R0"));
   EXPECT_THAT(order, Contains("R2"));
+}
+
+TEST(Scheduler, longJobOfWhoHadTheLastExchangeWaitsForAnothersCommand)
+{
+  VirtualLine line(2);
+  line.exchanges(7);
+  line.views[0].background = true;
+  line.push(1, CommandKind::ReadParameter, { 0 });
+  line.push(2, CommandKind::ReadParameter, { 1 });
+  Names names = line.exchanges(8);
+  for (std::size_t index = 1; index < names.size(); ++index)
+  {
+    EXPECT_FALSE(names[index] == "B0" && names[index - 1] == "C1") << index;
+  }
+  EXPECT_THAT(names, Contains("B0"));
 }
 
 TEST(Scheduler, halvesOfRefreshesThatDeadlinesBeganTakeTurns)

@@ -174,6 +174,157 @@ TEST_P(ChangingStream, aDriveThatRefusesEveryFrequencyTakesNobodysTurn)
   EXPECT_NEAR(bus.motor("good", "reference"), last_velocity, 2.0);
 }
 
+// --- alive means data (8.15) -----------------------------------------------------------------------------------------
+
+/// What a drive does from a moment on, and how the node calls it.
+struct Ailment
+{
+  const char* name;
+  std::vector<const char*> faults;
+  const char* words;
+};
+
+std::string nameOfAilment(const testing::TestParamInfo<Ailment>& info)
+{
+  return info.param.name;
+}
+
+class HalfAlive : public testing::TestWithParam<Ailment>
+{
+protected:
+  void fallIll(VirtualBus& bus)
+  {
+    for (const char* fault : GetParam().faults)
+    {
+      bus.world(std::string("bad ") + fault);
+    }
+  }
+
+  /// Both run at a steady speed.
+  void begin(VirtualBus& bus)
+  {
+    bus.settleIn();
+    bus.stream(GOOD, 20.0, 0.1, 60.0, "/good");
+    bus.stream(BAD, 20.0, 0.1, 60.0, "/bad");
+    bus.run(3.0);
+    ASSERT_EQ(bus.motor("bad", "run_coil"), 1);
+  }
+};
+
+TEST_P(HalfAlive, isOfflineInEverySenseAndSaysWhy)
+{
+  VirtualBus bus(TWO_BELTS);
+  begin(bus);
+  fallIll(bus);
+  const TimePoint ill = bus.now();
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.status(BAD).communication_error; }));
+  EXPECT_LT(toSeconds(bus.now() - ill), 3.0);
+  EXPECT_TRUE(bus.status(BAD).locked);
+  EXPECT_FALSE(bus.status(BAD).monitor.output_frequency.has_value()) << "an old value is shown as fresh";
+  EXPECT_TRUE(logged(bus, std::string("bad: offline: ") + GetParam().words)) << GetParam().words;
+  bus.run(1.0);
+  EXPECT_EQ(bus.command(BAD, 20.0, "/bad"), bus::ERROR_OFFLINE);
+  bus.run(0.6);
+  EXPECT_NE(bus.status(BAD).error_text.find(GetParam().words), std::string::npos) << bus.status(BAD).error_text;
+  EXPECT_NE(bus.diagnostics(BAD).find(GetParam().words), std::string::npos) << bus.diagnostics(BAD);
+  const bus::Answer answer = bus.wait(bus.readParameter(BAD, "F002"));
+  EXPECT_EQ(answer.error_id, bus::ERROR_OFFLINE);
+}
+
+TEST_P(HalfAlive, staysOfflineAndIsPublished)
+{
+  VirtualBus bus(TWO_BELTS);
+  begin(bus);
+  const auto lines_before = bus.logTexts().size();
+  fallIll(bus);
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.status(BAD).communication_error; }));
+  const TimePoint end = bus.now() + seconds(30.0);
+  while (bus.now() < end)
+  {
+    bus.run(0.1);
+    ASSERT_TRUE(bus.status(BAD).communication_error);
+  }
+  const auto lines = bus.logTexts();
+  EXPECT_TRUE(std::none_of(lines.begin() + static_cast<std::ptrdiff_t>(lines_before), lines.end(),
+                           [](const auto& line) { return line.find("bad: online") != std::string::npos; }))
+      << "online is said when a status was read";
+  EXPECT_EQ(bus.motor("good", "run_coil"), 1) << "the good one has nothing to do with it";
+  EXPECT_LT(toSeconds(bus.now() - bus.status(GOOD).stamp), 0.5);
+}
+
+TEST_P(HalfAlive, costsTheGoodOneNextToNothing)
+{
+  VirtualBus bus(TWO_BELTS);
+  begin(bus);
+  fallIll(bus);
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.status(BAD).communication_error; }));
+  bus.run(5.0);
+  bus.clearFrames();
+  const TimePoint start = bus.now();
+  bus.run(40.0);
+  double spent = 0.0;
+  const auto& frames = bus.frames();
+  for (std::size_t index = 0; index + 1 < frames.size(); ++index)
+  {
+    const bool asks = frames[index].source == simulation::FrameRecord::Source::MASTER && frames[index].bytes[0] == 2;
+    if (asks)
+    {
+      std::size_t next = index + 1;
+      while (next + 1 < frames.size() && frames[next].source != simulation::FrameRecord::Source::MASTER)
+      {
+        ++next;
+      }
+      spent += toSeconds(frames[next].time - frames[index].time);
+    }
+  }
+  EXPECT_GT(spent, 0.0);
+  // 5 %, the gap before the next frame, and reads on the way that did bring data.
+  EXPECT_LE(spent / toSeconds(bus.now() - start), 0.065);
+}
+
+TEST_P(HalfAlive, isBackWithinThreeSecondsAndRunsNothing)
+{
+  VirtualBus bus(TWO_BELTS);
+  begin(bus);
+  fallIll(bus);
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.status(BAD).communication_error; }));
+  bus.run(7.0);
+  bus.clearFrames();
+  bus.world("bad clear");
+  ASSERT_TRUE(bus.runUntil(3.0, [&] { return !bus.status(BAD).communication_error; }));
+  EXPECT_TRUE(logged(bus, "bad: online"));
+  bus.run(3.0);
+  EXPECT_EQ(bus.motor("bad", "run_coil"), 0);
+  EXPECT_EQ(bus.count("02 05 00 00 FF 00"), 0U) << "the stream has not returned to neutral";
+  EXPECT_EQ(bus.status(BAD).error_id, bus::ERROR_LOCKED);
+}
+
+TEST_P(HalfAlive, isToldAtStartUpToo)
+{
+  VirtualBus bus(TWO_BELTS);
+  fallIll(bus);
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.hasStatus(BAD); })) << "nothing is published of it";
+  EXPECT_TRUE(bus.status(BAD).communication_error);
+  EXPECT_FALSE(logged(bus, "bad: online"));
+  bus.world("bad clear");
+  EXPECT_TRUE(bus.runUntil(4.0, [&] { return !bus.status(BAD).communication_error; }));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, HalfAlive,
+    testing::Values(
+        Ailment{ "registersLost", { "lost_reply count 0 function 3" }, "no replies to the status: " },
+        Ailment{ "registersDamaged", { "damaged count 0 function 3" }, "damaged replies to the status: " },
+        Ailment{ "statusRefused", { "exception 2 count 0 function 1" }, "answers exception 02 to the status" },
+        Ailment{ "busyForEver", { "exception 6 count 0 function 1" }, "answers exception 06 to the status" },
+        Ailment{ "loopBacksOnly",
+                 { "lost_reply count 0 function 1", "lost_reply count 0 function 3", "lost_request count 0 function 5",
+                   "lost_request count 0 function 16" },
+                 "no reply in time" },
+        Ailment{ "everythingLate", { "late 0.3 count 0" }, "no reply in time" },
+        Ailment{ "dead", { "lost_request count 0" }, "no reply in time" }),
+    nameOfAilment);
+
 INSTANTIATE_TEST_SUITE_P(Rates, ChangingStream,
                          testing::Values(Stream{ 1.0, false }, Stream{ 2.0, false }, Stream{ 5.0, false },
                                          Stream{ 10.0, false }, Stream{ 20.0, false }, Stream{ 50.0, false },

@@ -71,8 +71,9 @@ public:
   };
   /// The next exchange to make right now; nothing: ask again at \p wake or when something was requested.
   std::optional<Exchange> next(TimePoint now, TimePoint& wake);
-  /// What time alone brings: dead men, bounds, slow publications. Also while the port is closed.
-  void tick(TimePoint now);
+  /// What time alone brings: dead men, bounds, slow publications. Also while the port is closed. True: an inverter has just
+  /// gone offline, because its status has not come for too long.
+  bool tick(TimePoint now);
   /// The first byte of that exchange is leaving now.
   void sent(TimePoint now);
   /// Its end.
@@ -232,6 +233,8 @@ private:
 
   // loop
   void watchDeadMen(TimePoint now);
+  bool watchStatuses(TimePoint now);
+  Duration refreshPeriod(const Inverter& inverter) const;
   void expireJobs(TimePoint now);
   void publishSlowly(TimePoint now);
   std::vector<InverterView> views(TimePoint now) const;
@@ -267,11 +270,14 @@ private:
   void finishVelocity(const Current& current, const wire::Reply& reply);
   void doneJob(const Current& current, const wire::Reply& reply);
   void doneRefresh(const Current& current, const wire::Reply& reply);
+  void refusedStatus(const wire::Reply& reply, Inverter& inverter);
   void doneSetting(const Current& current, const wire::Reply& reply);
   bool repeat(int& tries, const wire::Reply& reply) const;
   void portWorks();
   void noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t error_id);
+  void failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void wentOffline(TimePoint now, Inverter& inverter);
   void judgeRefresh(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);

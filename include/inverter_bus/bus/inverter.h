@@ -14,6 +14,7 @@
 #include "inverter_bus/bus/drive_settings.h"
 #include "inverter_bus/bus/interlock.h"
 #include "inverter_bus/bus/link_record.h"
+#include "inverter_bus/bus/liveness.h"
 #include "inverter_bus/bus/lost_writes.h"
 #include "inverter_bus/bus/movement.h"
 #include "inverter_bus/bus/refresh.h"
@@ -102,24 +103,36 @@ public:
   /// What came since the last complete status.
   LinkRecord record;
   LostWrites lost_writes;
+  Liveness liveness;
 
   // --- link -------------------------------------------------------------------------------------------------------
-  /// A valid reply came. Returns true if the inverter was offline or unknown before.
-  bool answered(const wire::Reply& reply);
+  /// A valid reply came, of whatever kind. It makes an offline inverter worth a trial, and no more: it is back with a complete
+  /// status only (contract, 8.15).
+  void answered(const wire::Reply& reply);
+  /// A reply to a probe came late, \p delay after its request: worth a trial, too.
+  void beginTrial(Duration delay);
+  /// Offline, but it answers: its settings and its status are being read, at the probes' cost if that leads to nothing.
+  bool onTrial() const;
+  /// The trial has led to nothing, since an exchange ended with \p error_id. Returns what it has cost.
+  Duration endTrial(std::uint16_t error_id);
+  /// Offline, and it is not even known to answer.
+  bool silent() const;
+  /// An exchange with it has ended (bookkeeping of probes and trials).
+  void noteCost(bool probe, wire::Outcome outcome, Duration cost);
   /// An exchange failed after its repeats. Returns true if the inverter has just gone offline. Lost writes of command words
   /// alone don't take it offline (contract, 8.1): a read must have been lost among them.
   bool failed(TimePoint now, std::uint16_t error_id, bool write = false);
+  /// The run words were refused. Returns true if the inverter has just gone offline.
+  bool refusedStatus(std::uint16_t error_id);
+  /// No complete status has come for too long (contract, 8.15); \p period of its refreshes.
+  bool overdue(TimePoint now, Duration period) const;
   /// The port is gone, or the inverter is given up: offline at once.
   void goOffline(std::uint16_t error_id);
   bool offline() const;
-  /// Only writes were lost, and so many that a read has to tell whether the drive is away.
-  bool needsRead() const;
   /// A complete status has come since start or return.
   bool known() const;
   /// A complete status has come since the node was started.
   bool everKnown() const;
-  /// It answers again, but no complete status has come yet: to users it is still away.
-  bool unreadSinceReturn() const;
   /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
   std::optional<TimePoint> serveBy(Duration deadline_margin) const;
   /// All reads that a refresh may be made of.
@@ -188,6 +201,8 @@ public:
   /// One was confirmed, or a 0 came.
   void velocityConfirmed();
   void noteExchangeError(std::uint16_t error_id);
+  /// How a probe ended: while it is offline that is the reason, not the port that was gone before.
+  void noteProbed(const wire::Reply& reply);
 
   bool reset_active = false;
   /// Frames of a job have led the drive into its setup area.
@@ -203,6 +218,8 @@ public:
   unsigned probes = 0;
 
 private:
+  void forgetDrive(bool after_silence);
+  void noteBack();
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
@@ -225,8 +242,12 @@ private:
   bool known_ = false;  ///< a complete status has come since start or return
   bool ever_known_ = false;
   bool offline_ = false;
-  int failures_ = 0;
-  bool read_failed_ = false;  ///< among these failures
+  bool on_trial_ = false;
+  /// What the trial has cost since the probe that began it, and how much of that was lost or refused.
+  Duration trial_cost_{ 0 };
+  Duration trial_waste_{ 0 };
+  /// Since the last trial, and nobody has answered it yet.
+  bool probed_ = false;
   std::uint16_t exchange_error_ = 0;
   /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
   std::uint8_t gateway_code_ = 0;

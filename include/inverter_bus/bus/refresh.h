@@ -41,6 +41,11 @@ public:
   /// The read that is due; starts a new refresh when none is under way.
   const drive::ReadBlock& next(TimePoint now);
 
+  /// No refresh is under way: next() starts one.
+  bool begins() const;
+  /// The drive has just refused a read of its run words that can't be had in another form; true once.
+  bool takeRefusal();
+
   /// The answer to next(). Returns true when the refresh needs another exchange.
   bool received(const wire::Reply& reply);
   /// The drive refused the read (exception): a block of several values is split, a single value is left out for a while.
@@ -100,6 +105,8 @@ private:
   bool isChosenWord(const Block& block, const wire::Reply& reply) const;
   bool dropBlock();
   void planFaultReads();
+  bool tellsRun(const Block& block) const;
+  bool leaveOut(std::size_t index, const wire::Reply& reply);
   bool advance();
   bool postpone();
 
@@ -114,6 +121,9 @@ private:
   TimePoint scratch_stamp_;
   TimePoint asked_at_;
   bool fault_planned_ = false;
+  /// A run word was read in the refresh under way.
+  bool run_read_ = false;
+  bool run_refused_ = false;
   drive::Monitor fresh_;
   TimePoint fresh_sent_at_;
   TimePoint stamp_;

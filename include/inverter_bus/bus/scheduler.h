@@ -147,7 +147,7 @@ public:
   /// Inverters that a waiting velocity still has to serve, in node order; empty: no such command.
   std::vector<std::size_t> members(CommandId id) const;
 
-  /// A refresh of this inverter goes as soon as others let it, also in the pause of the interval.
+  /// The next read of this inverter's refresh goes before everything but stops, once.
   void readSoon(std::size_t inverter);
 
   // --- decisions ----------------------------------------------------------------------------------------------------
@@ -206,11 +206,13 @@ private:
   std::optional<Pick> chooseGoingOn(TimePoint now, const std::vector<InverterView>& views);
   bool commandsGiveWay(TimePoint now, const std::vector<InverterView>& views) const;
   std::optional<Pick> chooseInTurn(TimePoint now, const std::vector<InverterView>& views);
+  std::optional<Pick> pickReadSoon(TimePoint now, const std::vector<InverterView>& views) const;
   std::optional<Pick> chooseForAnother(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> goOnWithUnit(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> goOnWithRefresh(TimePoint now, const std::vector<InverterView>& views);
   bool deadlinesMayGo(const std::vector<InverterView>& views) const;
-  bool backgroundIsDue(const std::vector<InverterView>& views) const;
+  std::optional<Pick> backgroundInTurn(TimePoint now, const std::vector<InverterView>& views);
+  bool backgroundIsDue(TimePoint now, const std::vector<InverterView>& views) const;
   void doneCommand(const Pick& pick, bool more);
   void doneRefresh(const Pick& pick, bool more, bool answered);
   void noteHalfRefresh(const Pick& pick, bool more);
@@ -261,6 +263,7 @@ private:
   std::deque<std::size_t> half_refreshed_;
   /// Those whose turn in the cycle came just after an exchange of theirs was lost: they take it after somebody else.
   std::deque<std::size_t> put_off_;
+  std::deque<std::size_t> read_soon_;
   /// One of them had its turn last: the cycle goes on before the next one has.
   bool cycle_first_ = false;
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_LIVENESS_H
+#define INVERTER_BUS_BUS_LIVENESS_H
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "inverter_bus/wire/request.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// Whether an inverter is alive: alive means data (contract, 8.15). Too many failures in a row, or no complete status for
+/// too long, make it offline; what answers without telling its status (a loop-back, an acknowledged write, a late reply) is
+/// no reason to show it as alive. Pure: time comes in as an argument. Not thread safe.
+class Liveness
+{
+public:
+  /// \p offline_after failures in a row (bus parameter `offline_after`).
+  explicit Liveness(int offline_after);
+
+  // --- failures in a row ----------------------------------------------------------------------------------------------
+  /// An exchange was lost, after its repeats; true: so many in a row that the inverter is offline. Lost \p write of command
+  /// words alone don't make it so (8.1): a read must be among them.
+  bool lost(bool write);
+  /// A read of the run words was answered by an exception; counts like a lost exchange.
+  bool refused();
+  /// A read brought data of the status: the row is over.
+  void dataRead();
+  /// Only writes were lost, but so many that a read has to tell whether the drive is away.
+  bool needsRead() const;
+
+  // --- the age of the status ------------------------------------------------------------------------------------------
+  /// A refresh begins.
+  void turn(TimePoint now);
+  /// The watch begins at this time: nothing that came before was to be expected (start-up, a reset's deaf time).
+  void watchFrom(TimePoint time);
+  void complete(TimePoint now);
+  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked and did not tell. \p period is the longest
+  /// time between two refreshes of this inverter as the configuration has it; where turns lie further apart (others that
+  /// don't answer), that counts.
+  bool overdue(TimePoint now, Duration period) const;
+
+  // --- what has become of its reads -----------------------------------------------------------------------------------
+  /// Each read of a refresh. \p length is what tells a long reply from a short one: its cost on the line.
+  void noteRead(Duration length, const wire::Reply& reply);
+  /// Why no status comes, in words, from the reads since the last complete one: "answers exception 02 to the status",
+  /// "damaged long replies: 221 of 369", "no long replies: 4 of 9"; empty: nothing to say beyond that no reply came.
+  std::string reason() const;
+  /// Error id of the last read that failed since the last complete status; 0: none has.
+  std::uint16_t lastError() const;
+
+private:
+  struct Reads
+  {
+    unsigned asked = 0;
+    unsigned lost = 0;
+    unsigned damaged = 0;
+    unsigned refused = 0;
+  };
+  Reads since(Duration length) const;
+
+  int offline_after_;
+  int failures_ = 0;
+  bool read_failed_ = false;
+
+  TimePoint since_;
+  std::optional<TimePoint> turn_at_;
+  Duration turn_period_{ 0 };
+
+  /// By length, since the last complete status.
+  std::map<Duration, Reads> reads_;
+  std::uint16_t last_error_ = 0;
+  std::uint16_t refusal_ = 0;
+  /// A read was answered after one that was not: the drive is there.
+  bool answers_some_ = false;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_LIVENESS_H

@@ -147,6 +147,11 @@ bool ConnectionWatch::resuming() const
   return resuming_since_.has_value();
 }
 
+bool ConnectionWatch::closedAgain(std::size_t inverter) const
+{
+  return std::count(tried_.begin(), tried_.end(), inverter) > 1;
+}
+
 std::optional<std::size_t> ConnectionWatch::toRead() const
 {
   return checking_ && !unread_.empty() ? std::optional<std::size_t>(unread_.front()) : std::nullopt;

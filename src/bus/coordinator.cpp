@@ -132,7 +132,7 @@ Duration Coordinator::refreshPeriod(const Inverter& inverter) const
 {
   const Duration period = budget_.cycle + seconds(configuration_.bus.interval);
   const int cycles = inverter.view(opened_at_, budget_.deadline_margin).at_rest ? configuration_.bus.idle_divisor : 1;
-  return cycles * period + (gateway_.active() ? gateway_.block() : Duration::zero());
+  return cycles * period + gateway_.longestPause();
 }
 
 void Coordinator::expireJobs(TimePoint now)

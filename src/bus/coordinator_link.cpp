@@ -54,7 +54,7 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
 void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
 {
   behind_another_ = false;
-  if (!gateway_.active() || current.request.broadcast)
+  if (!gateway_.active() || current.request.broadcast || reply.ticket == 0)
   {
     return;
   }
@@ -297,7 +297,8 @@ void Coordinator::loseEverybody(TimePoint now, std::uint16_t error_id)
   }
 }
 
-/// After a reopening: pending stops, then one read of each inverter that was online, before anything else.
+/// After a reopening: pending stops, then one read of each inverter that was online, before anything else. A stop that
+/// insists in vain lets these reads through, and one that has lost nothing but writes is read first: it may be away.
 std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
 {
   while (const auto index = connection_.toRead())
@@ -308,6 +309,7 @@ std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
       continue;
     }
     gate.stops_only = true;
+    gate.others_wait = true;
     const Pick stop = scheduler_->next(now, views(now), gate);
     if (stop.what != Pick::What::Nothing || !gateway_.free(now))
     {
@@ -315,7 +317,10 @@ std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
     }
     Pick pick;
     pick.what = Pick::What::Refresh;
-    pick.inverter = *index;
+    const auto in_doubt = std::find_if(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
+      return !inverter->offline() && inverter->liveness.needsRead();
+    });
+    pick.inverter = in_doubt != inverters_.end() ? (*in_doubt)->index : *index;
     return pick;
   }
   return std::nullopt;

@@ -48,6 +48,8 @@ void Coordinator::done(const wire::Reply& reply)
   }
   const Current current = *current_;
   current_.reset();
+  // Before the end of the connection is booked: what was under way then may still be carried out.
+  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::PortLost)
   {
     ended(current, reply);
@@ -69,7 +71,6 @@ void Coordinator::done(const wire::Reply& reply)
 /// The end of an exchange over a port that is there, or soon is again.
 void Coordinator::ended(const Current& current, const wire::Reply& reply)
 {
-  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::Timeout || reply.finished_at - opened_at_ > seconds(PORT_WORKS_AFTER_S))
   {
     portWorks();
@@ -240,9 +241,10 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     return;
   }
   const bool write = !current.resync && !inverter.stop.written();
-  if (reply.connection_closed && !inverter.offline())
+  if (reply.connection_closed && !inverter.offline() && !connection_.closedAgain(current.inverter))
   {
-    // It counts no try: the same frame goes first over the next connection.
+    // It counts no try: the same frame goes first over the next connection. Closed again in its place, it is its station
+    // that is silent.
     if (write)
     {
       noteLostWrite(reply.finished_at, inverter, reply.error_id);
@@ -568,7 +570,9 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
 void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
 {
   Inverter& inverter = *inverters_[current.inverter];
-  if (!current.resync)
+  // What waited in a gateway behind an older request says nothing of this inverter.
+  const bool says_nothing = behind_another_ && !alive(reply);
+  if (!current.resync && !says_nothing)
   {
     inverter.liveness.noteRead(line_.cost(current.request, Duration{ 0 }), reply);
   }

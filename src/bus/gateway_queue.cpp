@@ -105,8 +105,9 @@ void GatewayQueue::noteUnanswered(const Entry& entry)
 {
   if (entry.lost && !entry.orphan && !entry.behind_another)
   {
-    unanswered_ = std::min(unanswered_ + 1, UNANSWERED_BY_NATURE);
+    // As long as it was waited for, not as long as the next one will be.
     block_ = wait();
+    unanswered_ = std::min(unanswered_ + 1, UNANSWERED_BY_NATURE);
   }
 }
 
@@ -197,6 +198,13 @@ bool GatewayQueue::behindAnother(std::uint64_t ticket) const
 Duration GatewayQueue::block() const
 {
   return block_;
+}
+
+Duration GatewayQueue::longestPause() const
+{
+  const bool waiting =
+      std::any_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.lost && !entry.orphan; });
+  return waiting ? std::max(block_, wait()) : block_;
 }
 
 bool GatewayQueue::silentByNature() const

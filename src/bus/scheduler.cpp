@@ -305,7 +305,7 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 /// The gateway still works on a request that was lost: whatever follows it would wait in there.
 Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate)
 {
-  if (const auto stop = pickStop(now, views, true))
+  if (const auto stop = pickStop(now, views, !gate.others_wait))
   {
     return *stop;
   }

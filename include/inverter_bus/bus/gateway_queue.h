@@ -89,6 +89,9 @@ public:
   // --- what it has learned --------------------------------------------------------------------------------------------
   /// How long the last request that nobody answered in time has kept the gateway; 0: none has.
   Duration block() const;
+  /// How long nothing but stops may go because of one lost request, by what is known now: block(), or while one is waited
+  /// for, the wait.
+  Duration longestPause() const;
   /// It leaves requests unanswered for ever, as a server without a line behind it does.
   bool silentByNature() const;
   /// How long a lost request is waited for, counted from when it was sent.

@@ -73,6 +73,8 @@ struct Gate
   bool stops_only = false;
   /// When that ends.
   TimePoint until;
+  /// Somebody else waits for an exchange meanwhile: a stop that insists lets it through.
+  bool others_wait = false;
   /// Offline inverters without a pending stop may be probed.
   bool bare_probes = true;
 };

@@ -259,6 +259,7 @@ void Checker::stepped(TimePoint now)
     endExchange(now);
   }
   checkOverdue(now);
+  checkBlindness(now);
   for (const auto& call : calls_)
   {
     if (now > call.second.until + scene_.longestExchange() + babble(now))
@@ -290,6 +291,7 @@ void Checker::endExchange(TimePoint now)
       lane.settled = false;
       // Words that a refresh repeats are no velocity's.
       lane.lost_frames += facts_.stop || facts_.with_read ? 0 : 1;
+      lane.held.reset();
     }
     lane.silences += facts_.expects_reply ? 1 : 0;
     // One that has answered since, however late, is back.
@@ -478,6 +480,7 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
   if (facts_.set_hertz && good)
   {
     lane.set_answered = facts_.set_hertz;
+    lane.held = facts_.set_hertz;
   }
   const double steps = scene_.inverters[index].brand == Brand::JE ? 10.0 : 100.0;
   const bool newest = lane.set_answered && std::fabs(std::round(std::fabs(lane.hertz) * steps) -
@@ -503,6 +506,24 @@ std::set<unsigned> Checker::settingsOf(std::size_t index) const
   return facts.brand == Brand::TOSHIBA ? std::set<unsigned>{ 0x0803, 0x0804 } : std::set<unsigned>{};
 }
 
+bool Checker::unreadSettings(std::size_t index) const
+{
+  const std::set<unsigned> wanted = settingsOf(index);
+  const std::set<unsigned>& read = lanes_[index].settings_read;
+  return !std::includes(read.begin(), read.end(), wanted.begin(), wanted.end());
+}
+
+/// The turn came to a drive that has lost an exchange: a loop-back goes before what is alike (rule 3.9).
+bool Checker::clearsLineForSetting(TimePoint now) const
+{
+  if (!facts_.loopback || !facts_.inverter || !unreadSettings(*facts_.inverter))
+  {
+    return false;
+  }
+  const Lane& lane = lanes_[*facts_.inverter];
+  return lane.first_time && lane.online && now - lane.lost_at < seconds(3.0);
+}
+
 /// Rule 3.14, for the time until each drive's settings have been read once.
 void Checker::checkBackground(TimePoint now)
 {
@@ -512,16 +533,14 @@ void Checker::checkBackground(TimePoint now)
   {
     Lane& lane = lanes_[index];
     supervised += scene_.inverters[index].drive_timeout > 0.0 ? 1 : 0;
-    const std::set<unsigned> wanted = settingsOf(index);
     // After a lost exchange what is alike waits for a while (rule 3.9).
     const bool undisturbed = lane.lost_at == TimePoint() || now - lane.lost_at > seconds(3.0);
-    const bool unread = undisturbed && !std::includes(lane.settings_read.begin(), lane.settings_read.end(),
-                                                      wanted.begin(), wanted.end());
+    const bool unread = undisturbed && unreadSettings(index);
     waiting = waiting || (lane.first_time && lane.online && unread);
   }
   const bool counts = facts_.reads && !facts_.reads_run && !facts_.loopback;
   // One that a drive is told, and that it refuses for a while, has had the turn of one that is to be read.
-  const bool its_turn = facts_.reads_parameter || facts_.writes_setting;
+  const bool its_turn = facts_.reads_parameter || facts_.writes_setting || clearsLineForSetting(now);
   if (!waiting || !counts || its_turn)
   {
     without_background_ = its_turn || !waiting ? 0 : without_background_;

@@ -159,7 +159,8 @@ private:
     bool run_reverse = false;
     bool settled = false;
     std::optional<double> set_answered;
-    bool shown = false;  ///< the last exchange succeeded and showed RUN in force
+    std::optional<double> held;  ///< the set-point that it has acknowledged last; a stop doesn't take it away [Hz]
+    bool shown = false;          ///< the last exchange succeeded and showed RUN in force
     std::optional<TimePoint> power_lost;
     TimePoint cut_at;             ///< of the supply, the last time
     bool latched_at_cut = false;  ///< RUN, just before
@@ -227,9 +228,12 @@ private:
   void checkTurn(TimePoint now);
   void checkBounded(TimePoint now) const;
   bool waits(TimePoint now, std::size_t index) const;
+  void checkBlindness(TimePoint now) const;
   void checkWentOffline(TimePoint now, std::size_t index) const;
   void payProbe(TimePoint now, Duration cost);
   void checkBackground(TimePoint now);
+  bool clearsLineForSetting(TimePoint now) const;
+  bool unreadSettings(std::size_t index) const;
   std::set<unsigned> settingsOf(std::size_t index) const;
 
   // motion

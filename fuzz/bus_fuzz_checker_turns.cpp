@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
+#include <cmath>
 #include <string>
 
 #include "bus_fuzz_checker.h"
@@ -16,6 +17,8 @@ namespace
 constexpr double BARRED_S = 3.0;
 // Of a drive's own time-out: before it has passed, the drive is not late yet, but it has the next turn.
 constexpr double NEAR_SHARE = 0.95;
+// Coarser than the rounding of every brand.
+constexpr double SET_POINT_STEP_HZ = 0.051;
 }  // namespace
 
 /// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent; or its
@@ -27,7 +30,10 @@ bool Checker::waits(TimePoint now, std::size_t index) const
   {
     return false;
   }
-  const bool commanded = lane.permit && !lane.settled && lane.run_copies == 0 && lane.set_copies == 0 &&
+  // Commanded once more what is in force already: there is nothing to send.
+  const bool in_force = lane.run_answered && lane.run_reverse == (lane.hertz < 0.0) && lane.held &&
+                        std::fabs(*lane.held - std::fabs(lane.hertz)) < SET_POINT_STEP_HZ;
+  const bool commanded = lane.permit && !lane.settled && !in_force && lane.run_copies == 0 && lane.set_copies == 0 &&
                          !lane.set_answered && lane.accepted_at < turn_began_;
   const double timeout = scene_.inverters[index].drive_timeout;
   const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&
@@ -70,6 +76,22 @@ void Checker::checkBounded(TimePoint now) const
     fail(now, "a velocity is bounded whatever follows it",
          nameOf(*facts_.inverter) + " is sent one more velocity after " + std::to_string(lane.lost_frames) +
              " lost frames");
+  }
+}
+
+/// An inverter that has shown no complete status for so long is published as offline, whatever else it answers.
+void Checker::checkBlindness(TimePoint now) const
+{
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const Lane& lane = lanes_[index];
+    const Duration blind = now - lane.status.stamp;
+    if (connected_ && !shutting_down_ && lane.online && blind > seconds(scene_.longestBlindness()) + babble(now))
+    {
+      fail(now, "alive means data",
+           nameOf(index) + " is shown as online, its last complete status is " + std::to_string(toSeconds(blind)) +
+               " s old");
+    }
   }
 }
 

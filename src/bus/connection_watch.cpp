@@ -59,17 +59,15 @@ bool ConnectionWatch::isTried(std::size_t inverter) const
   return std::find(tried_.begin(), tried_.end(), inverter) != tried_.end();
 }
 
-/// Three times in ten seconds; but not where each one came in place of the answer of one station that never answers: that is
+/// Three times in ten seconds; but not where each one came in place of the answer of a station that never answers: that is
 /// how some gateways say "no answer".
 bool ConnectionWatch::closedTooOften(TimePoint now) const
 {
   const auto recent = [now](const QuickClose& close) { return now - close.at <= seconds(QUICK_CLOSES_WINDOW_S); };
   const auto count = static_cast<std::size_t>(std::count_if(quick_closes_.begin(), quick_closes_.end(), recent));
-  const auto& one = quick_closes_.back();
-  const bool one_silent_station = std::all_of(quick_closes_.begin(), quick_closes_.end(), [&](const QuickClose& close) {
-    return close.inverter && close.inverter == one.inverter && !close.answers;
-  });
-  return count >= MOST_QUICK_CLOSES && !one_silent_station;
+  const bool silent_stations = std::all_of(quick_closes_.begin(), quick_closes_.end(),
+                                           [](const QuickClose& close) { return close.inverter && !close.answers; });
+  return count >= MOST_QUICK_CLOSES && !silent_stations;
 }
 
 ConnectionWatch::Verdict ConnectionWatch::closed(TimePoint now, std::optional<std::size_t> inverter)
@@ -145,6 +143,11 @@ void ConnectionWatch::slowDown()
 bool ConnectionWatch::resuming() const
 {
   return resuming_since_.has_value();
+}
+
+bool ConnectionWatch::closedAgain(std::size_t inverter) const
+{
+  return std::count(tried_.begin(), tried_.end(), inverter) > 1;
 }
 
 std::optional<std::size_t> ConnectionWatch::toRead() const

@@ -132,7 +132,7 @@ Duration Coordinator::refreshPeriod(const Inverter& inverter) const
 {
   const Duration period = budget_.cycle + seconds(configuration_.bus.interval);
   const int cycles = inverter.view(opened_at_, budget_.deadline_margin).at_rest ? configuration_.bus.idle_divisor : 1;
-  return cycles * period + (gateway_.active() ? gateway_.block() : Duration::zero());
+  return cycles * period + gateway_.longestPause();
 }
 
 void Coordinator::expireJobs(TimePoint now)
@@ -304,7 +304,8 @@ Pick Coordinator::pickShutdown(TimePoint now)
   }
   for (const auto& inverter : inverters_)
   {
-    const bool one_frame = inverter->stop.pending() && inverter->silent() && !shutdown_tried_[inverter->index];
+    const bool one_frame =
+        inverter->stop.pending() && inverter->silent() && !shutdown_tried_[inverter->index] && !untested(*inverter);
     if (best == nullptr && one_frame)
     {
       best = inverter.get();
@@ -329,13 +330,13 @@ Pick Coordinator::pickShutdown(TimePoint now)
   return pick;
 }
 
-/// When the next frame of a stop may go that waits for a gateway.
+/// When the next frame of a live inverter's stop may go that waits for a gateway; one that is silent has had its own.
 TimePoint Coordinator::nextStop(TimePoint now) const
 {
   TimePoint at = TimePoint::max();
   for (const auto& inverter : inverters_)
   {
-    at = inverter->stop.pending() ? std::min(at, stopNotBefore(now, *inverter)) : at;
+    at = inverter->stop.pending() && !inverter->silent() ? std::min(at, stopNotBefore(now, *inverter)) : at;
   }
   return at;
 }
@@ -416,8 +417,9 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     block = inverter.refresh.next(now);
     current.request = inverter.drive.read(inverter.config.node, block);
   }
-  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force.
-  if (!block.chosen.empty() && inverter.mayRepeatWords(now))
+  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force; never through a gateway,
+  // which could carry them out when everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11).
+  if (!configuration_.bus.gateway && !block.chosen.empty() && inverter.mayRepeatWords(now))
   {
     const std::vector<drive::Word> words = inverter.movement.wordsInForce();
     const wire::Request both =
@@ -674,14 +676,15 @@ void Coordinator::sent(TimePoint now)
       inverter.stop.forgetConfirmation();
     }
   }
-  if (current_->purpose == Purpose::Broadcast)
+  if (current_->purpose == Purpose::Broadcast && !gateway_.active())
   {
     noteStopLatency(now - broadcast_requested_);
   }
   if (current_->purpose == Purpose::StopFrame && !current_->resync)
   {
     const auto latency = inverter.stop.sent(now);
-    // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port that was gone, is no measure of the scheduler's latency.
+    // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port
+    // that was gone, is no measure of the scheduler's latency.
     if (latency && !current_->pick.probe && !gateway_.active())
     {
       noteStopLatency(*latency);

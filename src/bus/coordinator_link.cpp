@@ -16,8 +16,8 @@ namespace
 {
 // Contract, 8.9: one line a minute.
 constexpr double RESUMED_LOG_PERIOD_S = 60.0;
-// How often a stop is sent over a telnet connection before it is closed.
-constexpr unsigned TELNET_STOP_ATTEMPTS = 2;
+// Failed attempts at a stop over a telnet connection before it is closed: a second one would wait for the probes' turn.
+constexpr unsigned TELNET_STOP_ATTEMPTS = 1;
 // How soon a write is looked at again that waits for the first valid reply of a connection.
 constexpr double UNPROVEN_PERIOD_S = 0.02;
 // Contract, 8.10: the link is not renewed within a stop's first tries.
@@ -44,6 +44,8 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
       return current.resync || !current.moves ? GatewayRisk::None : GatewayRisk::Motion;
     case Purpose::Refresh:
     case Purpose::KeepAlive:
+    case Purpose::Setting:
+      // A setting may have taken the refresh's turn.
       return current.pick.deadline ? GatewayRisk::Refresh : GatewayRisk::None;
     default:
       return GatewayRisk::None;
@@ -54,11 +56,11 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
 void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
 {
   behind_another_ = false;
-  if (!gateway_.active() || current.request.broadcast)
+  if (!gateway_.active() || current.request.broadcast || reply.ticket == 0)
   {
     return;
   }
-  gateway_.sent(reply.sent_at, reply.ticket, current.inverter, riskOf(current));
+  gateway_.sent(reply.sent_at, reply.ticket, current.inverter, riskOf(current), current.pick.probe);
   const bool answered = isAnswered(reply) || reply.gateway_code != 0;
   behind_another_ = !answered && gateway_.behindAnother(reply.ticket);
   if (answered)
@@ -297,7 +299,8 @@ void Coordinator::loseEverybody(TimePoint now, std::uint16_t error_id)
   }
 }
 
-/// After a reopening: pending stops, then one read of each inverter that was online, before anything else.
+/// After a reopening: pending stops, then one read of each inverter that was online, before anything else. A stop that
+/// insists in vain lets these reads through, and one that has lost nothing but writes is read first: it may be away.
 std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
 {
   while (const auto index = connection_.toRead())
@@ -308,6 +311,7 @@ std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
       continue;
     }
     gate.stops_only = true;
+    gate.others_wait = true;
     const Pick stop = scheduler_->next(now, views(now), gate);
     if (stop.what != Pick::What::Nothing || !gateway_.free(now))
     {
@@ -315,7 +319,10 @@ std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
     }
     Pick pick;
     pick.what = Pick::What::Refresh;
-    pick.inverter = *index;
+    const auto in_doubt = std::find_if(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
+      return !inverter->offline() && inverter->liveness.needsRead();
+    });
+    pick.inverter = in_doubt != inverters_.end() ? (*in_doubt)->index : *index;
     return pick;
   }
   return std::nullopt;
@@ -365,12 +372,21 @@ void Coordinator::reopening(TimePoint now)
   gateway_.connectionEnded(now);
 }
 
-/// Only stops go over a telnet connection, and then it is closed.
-bool Coordinator::telnetOver(TimePoint now) const
+/// Only stops go over a telnet connection, and then it is closed. Whatever runs is stopped over it, as far as it carries.
+bool Coordinator::telnetOver(TimePoint now)
 {
-  return line_.telnetFound() && std::none_of(inverters_.begin(), inverters_.end(), [now](const auto& inverter) {
-           return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
-         });
+  if (!line_.telnetFound())
+  {
+    return false;
+  }
+  if (!telnet_)
+  {
+    telnet_ = true;
+    loseEverybody(now, wire::ERROR_PORT_LOST);
+  }
+  return std::none_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
+    return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
+  });
 }
 
 void Coordinator::closedForTelnet(TimePoint now)

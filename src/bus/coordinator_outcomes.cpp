@@ -48,6 +48,8 @@ void Coordinator::done(const wire::Reply& reply)
   }
   const Current current = *current_;
   current_.reset();
+  // Before the end of the connection is booked: what was under way then may still be carried out.
+  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::PortLost)
   {
     ended(current, reply);
@@ -69,7 +71,6 @@ void Coordinator::done(const wire::Reply& reply)
 /// The end of an exchange over a port that is there, or soon is again.
 void Coordinator::ended(const Current& current, const wire::Reply& reply)
 {
-  noteGateway(current, reply);
   if (reply.outcome != wire::Outcome::Timeout || reply.finished_at - opened_at_ > seconds(PORT_WORKS_AFTER_S))
   {
     portWorks();
@@ -240,9 +241,10 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     return;
   }
   const bool write = !current.resync && !inverter.stop.written();
-  if (reply.connection_closed && !inverter.offline())
+  if (reply.connection_closed && !inverter.offline() && !connection_.closedAgain(current.inverter))
   {
-    // It counts no try: the same frame goes first over the next connection.
+    // It counts no try: the same frame goes first over the next connection. Closed again in its place, it is its station
+    // that is silent.
     if (write)
     {
       noteLostWrite(reply.finished_at, inverter, reply.error_id);
@@ -484,13 +486,15 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
   }
   RunningJob& running = found->second;
   Inverter& inverter = *inverters_[current.inverter];
-  if (repeat(running.tries, reply))
+  const bool reads =
+      running.job->kind() == CommandKind::ReadParameter || running.job->kind() == CommandKind::ReadFaults;
+  // What was under way when the connection was closed may have been carried out (contract, 8.9).
+  const bool once = reply.connection_closed && !reads;
+  if (!once && repeat(running.tries, reply))
   {
     finishExchange(current, reply, true);
     return;
   }
-  const bool reads =
-      running.job->kind() == CommandKind::ReadParameter || running.job->kind() == CommandKind::ReadFaults;
   if (reads && reply.outcome == wire::Outcome::Ok)
   {
     inverter.liveness.dataRead();
@@ -574,7 +578,9 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
 void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
 {
   Inverter& inverter = *inverters_[current.inverter];
-  if (!current.resync)
+  // What waited in a gateway behind an older request says nothing of this inverter.
+  const bool says_nothing = behind_another_ && !alive(reply);
+  if (!current.resync && !says_nothing)
   {
     inverter.liveness.noteRead(line_.cost(current.request, Duration{ 0 }), reply);
   }
@@ -709,7 +715,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
   link_.answered();
   const auto request = gateway_.answeredLate(now, late.ticket);
   const bool alone = !gateway_.active() || (request && request->alone);
-  if (request && request->alone && inverters_[request->inverter]->offline())
+  if (request && request->alone && request->probe)
   {
     scheduler_->chargeProbe(now, gateway_.block());
   }
@@ -759,6 +765,7 @@ void Coordinator::portOpened(TimePoint now)
   }
   ever_opened_ = true;
   link_.opened(now);
+  telnet_ = false;
   const bool same = connection_.resuming();
   // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
   scheduler_->restartCycle(now, !same && connection_.closedUnused() == 0);
@@ -876,7 +883,7 @@ bool Coordinator::shutdownDone(TimePoint now)
   }
   return std::none_of(inverters_.begin(), inverters_.end(), [&](const std::unique_ptr<Inverter>& inverter) {
     const bool untried = !connected_ || !inverter->silent() || !shutdown_tried_[inverter->index];
-    return (inverter->stop.pending() && untried) || (connected_ && releaseDue(*inverter));
+    return (inverter->stop.pending() && untried && !untested(*inverter)) || (connected_ && releaseDue(*inverter));
   });
 }
 

@@ -3,6 +3,7 @@
 #include "inverter_bus/bus/drive_settings.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "inverter_bus/wire/shown_number.h"
 
@@ -12,6 +13,11 @@ namespace bus
 {
 namespace
 {
+// A setting that the drive could not tell just now (exception 04H, 06H, response code 2203) is asked for again, since what
+// it says may decide over safety; to one that never can it costs nothing worth speaking of.
+constexpr double FIRST_PAUSE_S = 1.0;
+constexpr unsigned MOST_DOUBLINGS = 6;
+
 std::string withUnit(double value, const std::string& unit)
 {
   return wire::shownNumber(value, 9) + (unit.empty() ? "" : " ") + unit;
@@ -90,14 +96,19 @@ const DriveSettings::Setting* DriveSettings::known(const std::string& parameter)
 
 bool DriveSettings::due(const Setting& setting) const
 {
-  return (setting.state == State::Unread || setting.again) && (!setting.when_commanded || commanded_);
+  const bool asked = setting.state == State::Unread || setting.again || setting.refusals > 0;
+  return asked && (!setting.when_commanded || commanded_);
 }
 
 const DriveSettings::Setting* DriveSettings::unread() const
 {
+  // One that the drive could not tell just now lets the others go first.
   const auto found =
-      std::find_if(settings_.begin(), settings_.end(), [this](const Setting& setting) { return due(setting); });
-  return found == settings_.end() ? nullptr : &*found;
+      std::min_element(settings_.begin(), settings_.end(), [this](const Setting& one, const Setting& other) {
+        return std::make_tuple(!due(one), !one.urgent, one.refusals) <
+               std::make_tuple(!due(other), !other.urgent, other.refusals);
+      });
+  return found == settings_.end() || !due(*found) ? nullptr : &*found;
 }
 
 void DriveSettings::restart()
@@ -105,6 +116,7 @@ void DriveSettings::restart()
   for (Setting& setting : settings_)
   {
     setting.state = State::Unread;
+    setting.refusals = 0;
   }
   model_state_ = State::Unread;
   commanded_ = false;
@@ -125,6 +137,7 @@ void DriveSettings::reread(const std::string& parameter)
     if (setting.parameter.name == parameter)
     {
       setting.state = State::Unread;
+      setting.refusals = 0;
     }
   }
 }
@@ -263,11 +276,29 @@ void DriveSettings::done(const wire::Reply& reply)
     setting.raw = drive_.rawParameter(setting.parameter, reply.pdu);
     setting.value = drive_.decodeParameter(setting.parameter, reply.pdu);
     setting.state = State::Known;
+    setting.refusals = 0;
   }
-  else if (reply.outcome == wire::Outcome::Exception && (!setting.urgent || isLastingRefusal(reply)))
+  else if (isLastingRefusal(reply))
   {
     setting.state = State::Refused;
+    setting.refusals = 0;
   }
+  else if (reply.outcome == wire::Outcome::Exception)
+  {
+    ++setting.refusals;
+    setting.state = setting.urgent ? setting.state : State::Refused;
+  }
+}
+
+Duration DriveSettings::pauseBeforeNext() const
+{
+  const Setting* setting = unread();
+  if (urgent() || setting == nullptr || setting->refusals == 0)
+  {
+    return Duration{ 0 };
+  }
+  const unsigned doublings = std::min(setting->refusals - 1, MOST_DOUBLINGS);
+  return seconds(FIRST_PAUSE_S * static_cast<double>(1U << doublings));
 }
 
 // --- what it is ------------------------------------------------------------------------------------------------------

@@ -31,7 +31,7 @@ std::vector<GatewayQueue::Entry>::iterator GatewayQueue::find(std::uint64_t tick
 
 // --- what happened ---------------------------------------------------------------------------------------------------
 
-void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk)
+void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk, bool probe)
 {
   if (!settings_.active)
   {
@@ -42,6 +42,7 @@ void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverte
   entry.ticket = ticket;
   entry.inverter = inverter;
   entry.risk = risk;
+  entry.probe = probe;
   entry.sent_at = now;
   entry.behind_another = !free(now);
   last_ticket_ = ticket;
@@ -78,7 +79,7 @@ std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std:
   {
     return std::nullopt;
   }
-  const Late late{ entry->inverter, entry->risk, !entry->behind_another };
+  const Late late{ entry->inverter, entry->risk, !entry->behind_another, entry->probe };
   if (late.alone)
   {
     block_ = now - entry->sent_at;
@@ -105,8 +106,9 @@ void GatewayQueue::noteUnanswered(const Entry& entry)
 {
   if (entry.lost && !entry.orphan && !entry.behind_another)
   {
-    unanswered_ = std::min(unanswered_ + 1, UNANSWERED_BY_NATURE);
+    // As long as it was waited for, not as long as the next one will be.
     block_ = wait();
+    unanswered_ = std::min(unanswered_ + 1, UNANSWERED_BY_NATURE);
   }
 }
 
@@ -118,7 +120,7 @@ std::optional<Duration> GatewayQueue::tick(TimePoint now)
     const bool over = (entry->lost || entry->orphan) && givenUpAt(*entry) <= now;
     if (over)
     {
-      kept = now - entry->sent_at;
+      kept = entry->probe && !entry->orphan ? std::optional<Duration>(now - entry->sent_at) : kept;
       noteUnanswered(*entry);
     }
     entry = over ? entries_.erase(entry) : entry + 1;
@@ -197,6 +199,13 @@ bool GatewayQueue::behindAnother(std::uint64_t ticket) const
 Duration GatewayQueue::block() const
 {
   return block_;
+}
+
+Duration GatewayQueue::longestPause() const
+{
+  const bool waiting =
+      std::any_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.lost && !entry.orphan; });
+  return waiting ? std::max(block_, wait()) : block_;
 }
 
 bool GatewayQueue::silentByNature() const

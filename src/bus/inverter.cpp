@@ -278,6 +278,7 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
     // Not at once again: the status is worth more.
     connect_not_before = now + seconds(CONNECT_PAUSE_S);
   }
+  refused_setting_not_before_ = now + settings.pauseBeforeNext();
   adoptSettings();
 }
 
@@ -997,7 +998,9 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_written = stop.pending() && stop.written();
   view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = refresh_not_before;
-  view.background = known_ && !offline_ && settings.pending() && refresh_not_before <= now && setting_not_before <= now;
+  const bool rested = refused_setting_not_before_ <= now || settings.pauseBeforeNext() == Duration{ 0 };
+  const bool may_ask = refresh_not_before <= now && setting_not_before <= now && rested;
+  view.background = known_ && !offline_ && settings.pending() && may_ask;
   view.serve_by = serveBy(deadline_margin);
   return view;
 }

@@ -253,7 +253,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
   const bool goes_on = pick.what == Pick::What::Refresh && std::find(half_refreshed_.begin(), half_refreshed_.end(),
                                                                      pick.inverter) != half_refreshed_.end();
   const bool stop = pick.what == Pick::What::Stop;
-  // Nor do stops, which belong to nobody's row.
+  // Nor does a stop: one that insists would otherwise leave every second exchange to deadlines for ever.
   deadlines_in_a_row_ = pick.deadline ? deadlines_in_a_row_ + 1 : goes_on || stop ? deadlines_in_a_row_ : 0;
   stops_in_a_row_ = stop ? stops_in_a_row_ + 1 : let_through_ ? stops_in_a_row_ : 0;
   if (stop)
@@ -307,7 +307,7 @@ Pick Scheduler::choose(TimePoint now, const std::vector<InverterView>& views)
 /// The gateway still works on a request that was lost: whatever follows it would wait in there.
 Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate)
 {
-  if (const auto stop = pickStop(now, views, true))
+  if (const auto stop = pickStop(now, views, !gate.others_wait))
   {
     return *stop;
   }
@@ -401,7 +401,10 @@ std::optional<Pick> Scheduler::goOnWithRefresh(TimePoint now, const std::vector<
   {
     avoided_ = last_inverter_;
     auto other = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
-    other = other ? other : pickCommand(now, false);
+    const auto command = other ? std::nullopt : pickCommand(now, false);
+    // Where deadlines never end, these are the only turns that commands and the refreshes of the others have.
+    other = command && commandsGiveWay(now, views) ? pickRefresh(now, views) : other;
+    other = other ? other : command;
     avoided_.reset();
     if (other)
     {
@@ -446,6 +449,17 @@ std::optional<Pick> Scheduler::backgroundInTurn(TimePoint now, const std::vector
   return other ? other : background;
 }
 
+/// Commands and refreshes take turns, whatever goes between them because its time has come.
+bool Scheduler::commandsGiveWay(TimePoint now, const std::vector<InverterView>& views) const
+{
+  // A stop that insists between any two of them makes each one wait for long: then a lone command has company, too.
+  const bool insisted = std::any_of(views.begin(), views.end(), [](const InverterView& view) {
+    return view.stop_pending && !view.offline && view.stop_attempts >= STOP_ATTEMPTS_AT_ONCE;
+  });
+  return commands_since_turn_ > 0 &&
+         (insisted || readyCommands(now) > 1 || commands_since_turn_ >= LONE_COMMANDS_IN_A_ROW);
+}
+
 std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<InverterView>& views)
 {
   const auto deadline = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
@@ -465,12 +479,7 @@ std::optional<Pick> Scheduler::chooseInTurn(TimePoint now, const std::vector<Inv
   }
   if (auto command = pickCommand(now, false))
   {
-    // A stop that insists between any two of them makes each one wait for long: then a lone command has company, too.
-    const bool insisted = std::any_of(views.begin(), views.end(), [](const InverterView& view) {
-      return view.stop_pending && !view.offline && view.stop_attempts >= STOP_ATTEMPTS_AT_ONCE;
-    });
-    const bool give_way =
-        commands_in_a_row_ > 0 && (insisted || readyCommands(now) > 1 || commands_in_a_row_ >= LONE_COMMANDS_IN_A_ROW);
+    const bool give_way = commandsGiveWay(now, views);
     if (give_way && probe)
     {
       return probe;
@@ -784,6 +793,9 @@ void Scheduler::chargeProbe(TimePoint now, Duration cost)
 void Scheduler::doneCommand(const Pick& pick, bool more)
 {
   const auto ticket = find(pick.command);
+  const bool unit_goes_on = more && ticket != tickets_.end() && ticket->command.kind == CommandKind::Velocity;
+  // Each frame of a long job is queued anew, and is a command of its own.
+  commands_since_turn_ += unit_goes_on ? 0 : 1;
   if (ticket == tickets_.end() || !more)
   {
     ++commands_in_a_row_;
@@ -798,6 +810,9 @@ void Scheduler::doneCommand(const Pick& pick, bool more)
 void Scheduler::doneRefresh(const Pick& pick, bool more, bool answered)
 {
   commands_in_a_row_ = 0;
+  const bool by_deadline = pick.deadline || std::find(half_refreshed_.begin(), half_refreshed_.end(), pick.inverter) !=
+                                                half_refreshed_.end();
+  commands_since_turn_ = by_deadline ? commands_since_turn_ : 0;
   silent_at_deadline_[pick.inverter] = answered ? 0 : exchanges_;
   read_soon_.erase(std::remove(read_soon_.begin(), read_soon_.end(), pick.inverter), read_soon_.end());
   const bool was_put_off = isPutOff(pick.inverter);

@@ -107,6 +107,8 @@ Reply Line::exchange(const Request& request, Duration turnaround_after)
 {
   flushIdle();
   Reply reply;
+  // What ends before it has begun took no time.
+  reply.sent_at = clock_.now();
   if (request.quiet_before > Duration{ 0 } && !settle(request.quiet_before))
   {
     lose(reply);

@@ -72,9 +72,14 @@ public:
   }
 
   /// The next open() renews settings, transmitter and buffers under the lock that is held: a close would let another
-  /// process in, and the open after it would move RTS.
+  /// process in, and the open after it would move RTS. A pseudo-terminal has neither settings to renew nor RTS: there only
+  /// a close tells the other side.
   void abandon() override
   {
+    if (pseudo_terminal_)
+    {
+      close();
+    }
     abandoned_ = tty_ >= 0;
   }
 

@@ -135,6 +135,17 @@ TEST_F(AConnectionWatch, goesOnWhereTheGatewayClosesInPlaceOfTheAnswerOfOneSilen
   }
 }
 
+TEST_F(AConnectionWatch, goesOnWhereSeveralStationsAreSilent)
+{
+  open(0.0, {});
+  for (int close = 0; close < 20; ++close)
+  {
+    watch_.answered(at(close + 0.1), 0);
+    EXPECT_EQ(watch_.closed(at(close + 0.5), close % 2 == 0 ? 1U : 2U), Verdict::Resume) << close;
+    open(close + 0.6);
+  }
+}
+
 TEST_F(AConnectionWatch, aStationThatAnswersInBetweenIsNotSilent)
 {
   open(0.0, {});

@@ -145,6 +145,29 @@ TEST_F(Mx2Settings, refusedReadIsShownAndNotAskedAgain)
   EXPECT_THAT(settings_.values(), Contains(Pair(StartsWith(refused), HasSubstr("refuses"))));
 }
 
+TEST_F(Mx2Settings, readThatIsRefusedForTheMomentIsAskedAgainAfterTheOthersAndMoreAndMoreSeldom)
+{
+  const std::string refused = nameOf(printed(settings_.next()));
+  settings_.done(exception(0x83, 0x04));
+  EXPECT_THAT(settings_.values(), Contains(Pair(StartsWith(refused), HasSubstr("refuses"))));
+  for (int other = 0; other < 6; ++other)
+  {
+    EXPECT_EQ(settings_.pauseBeforeNext(), Duration{ 0 });
+    EXPECT_NE(nameOf(printed(settings_.next())), refused);
+    settings_.done(word(100));
+  }
+  for (const int pause : { 1, 2, 4, 8, 16, 32, 64, 64 })
+  {
+    ASSERT_TRUE(settings_.pending());
+    EXPECT_EQ(settings_.pauseBeforeNext(), std::chrono::seconds(pause));
+    EXPECT_EQ(nameOf(printed(settings_.next())), refused);
+    settings_.done(exception(0x83, 0x04));
+  }
+  settings_.done(word(100));
+  EXPECT_FALSE(settings_.pending());
+  EXPECT_EQ(settings_.pauseBeforeNext(), Duration{ 0 });
+}
+
 TEST_F(Mx2Settings, nothingIsClaimedBeforeItIsRead)
 {
   EXPECT_THAT(settings_.findings(), IsEmpty());

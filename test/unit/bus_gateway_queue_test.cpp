@@ -179,12 +179,23 @@ TEST_F(AGatewayQueue, reckonsWithALateStartForTheWholeTimeWhereTheGatewayIsSilen
   EXPECT_EQ(queue_.motionUntil(at(20.7), LIVE), at(23.0));
 }
 
-TEST_F(AGatewayQueue, tellsWhatAGivenUpRequestHasCost)
+TEST_F(AGatewayQueue, tellsWhatAGivenUpProbeHasCost)
 {
-  lose(0.0, DEAD);
+  queue_.sent(at(0.0), 1, DEAD, GatewayRisk::None, true);
+  queue_.lost(at(0.3), 1);
   EXPECT_FALSE(queue_.tick(at(2.9)));
   EXPECT_EQ(queue_.tick(at(3.0)), std::optional<Duration>(std::chrono::seconds(3)));
   EXPECT_FALSE(queue_.tick(at(3.1))) << "once";
+}
+
+TEST_F(AGatewayQueue, aLostRequestThatWasNoProbeCostsTheProbesNothing)
+{
+  lose(0.0, LIVE);
+  EXPECT_FALSE(queue_.tick(at(3.0)));
+  queue_.sent(at(4.0), 2, DEAD, GatewayRisk::Motion, true);
+  queue_.lost(at(4.3), 2);
+  queue_.connectionEnded(at(4.5));
+  EXPECT_FALSE(queue_.tick(at(7.0))) << "of a connection that has ended";
 }
 
 TEST(NoGateway, allowsEverything)

@@ -31,6 +31,7 @@ using testing::IsEmpty;
 using testing::Le;
 using testing::Lt;
 using testing::Not;
+using testing::SizeIs;
 
 using Names = std::vector<std::string>;
 
@@ -1309,6 +1310,37 @@ TEST(Scheduler, driveWithATimeOutThatCannotBeMetLeavesTheBusToTheOthers)
   const Names names = line.exchanges(50);
   EXPECT_THAT(names, Contains("C1"));
   EXPECT_THAT(names, Contains("R1"));
+}
+
+TEST(Scheduler, deadlinesThatCannotBeMetLeaveTurnsToTheOthersWhileAStopInsists)
+{
+  VirtualLine line(4);
+  line.serve_within = { { 1, Duration{ 0 } }, { 2, Duration{ 0 } } };
+  line.views[1].serve_by = line.views[2].serve_by = at(0);
+  line.views[3].background = true;
+  line.dead.insert(0);
+  line.stop(0);
+  const Names names = line.exchanges(200);
+  EXPECT_THAT(names, Contains("R3"));
+  EXPECT_THAT(longestWithout('B', names), Le(16U)) << "stops, and one row of deadlines";
+}
+
+TEST(Scheduler, deadlinesThatCannotBeMetAndAFloodOfServicesLeaveTurnsToTheRefreshesOfTheOthers)
+{
+  VirtualLine line(4);
+  line.reads_per_refresh = 3;
+  line.serve_within = { { 1, Duration{ 0 } }, { 2, Duration{ 0 } } };
+  line.views[1].serve_by = line.views[2].serve_by = at(0);
+  for (CommandId id = 1; id <= 40; ++id)
+  {
+    line.push(id, CommandKind::ReadParameter, { id % 4 }, 100);
+  }
+  const Names names = line.exchanges(400);
+  for (const std::string other : { "R0", "R3" })
+  {
+    EXPECT_THAT(std::count(names.begin(), names.end(), other), Ge(9)) << other;
+  }
+  EXPECT_THAT(only('C', names), SizeIs(Ge(25U))) << "they share the turns between rows of deadlines";
 }
 
 TEST(Scheduler, driveThatFallsSilentDoesNotStarveCommandsByItsDeadline)

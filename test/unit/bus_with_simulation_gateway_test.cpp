@@ -3,6 +3,8 @@
 // A whole bus behind a Modbus TCP gateway, in virtual time (contract, 8.8 to 8.10, 8.16).
 
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -50,6 +52,22 @@ protected:
     ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(index).monitor.running.value_or(false); }));
   }
 
+  /// \p action as soon as the gateway holds back what it was told to, in the middle of the exchange.
+  void onHold(const std::function<void()>& action)
+  {
+    const auto done = std::make_shared<bool>(false);
+    for (double time = 0.0; time < 3.0; time += 0.01)
+    {
+      bus_->at(time, [this, action, done] {
+        if (!*done && bus_->gateway().held() > 0)
+        {
+          *done = true;
+          action();
+        }
+      });
+    }
+  }
+
   bool online(std::size_t index) const
   {
     return bus_->hasStatus(index) && !bus_->status(index).communication_error;
@@ -65,6 +83,27 @@ TEST_F(BehindAGateway, everythingWorks)
   const auto stop = bus_->wait(bus_->stop(A));
   EXPECT_TRUE(stop.success) << stop.message;
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
+/// A gateway may carry it out late: a refresh that repeats RUN is none behind one.
+TEST_F(BehindAGateway, aSettledCommandIsRefreshedByReadsAlone)
+{
+  start(
+      "port: tcp://virtual\n"
+      "defaults: {command_timeout: 5.0}\n"
+      "scan_list:\n"
+      "  - {name: a, node: 1, drive: toshiba_vfs15}\n"
+      "simulation:\n"
+      "  a: {parameters: {F870: 1, F871: 3, F875: 1, F876: 2, F877: 3, F878: 4, F879: 14}}\n");
+  bus_->settleIn(20.0);
+  bus_->stream(A, 20.0, 0.1, 30.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  bus_->run(1.0);
+  bus_->clearFrames();
+  bus_->run(5.0);
+  EXPECT_EQ(bus_->count("01 17"), 0U);
+  EXPECT_EQ(bus_->count("01 06") + bus_->count("01 10"), 0U);
+  EXPECT_GT(bus_->count("01 03 18 75 00 05"), 20U) << "the block";
 }
 
 TEST_F(BehindAGateway, aDeadUnitStopsNobodyElse)
@@ -86,6 +125,24 @@ TEST_F(BehindAGateway, aDeadUnitStopsNobodyElse)
     EXPECT_FALSE(online(B));
     EXPECT_LE(longest, 2U) << "one request is in the gateway at a time";
     EXPECT_LE(bus_->gateway().blocked(), 0.15 * 60.0 + 7 * silence) << "probes pay for the gateway's block";
+  }
+}
+
+/// It swallows a request now and then: nothing else is sent for gateway_timeout, which is longer than the 2 s of 8.15.
+TEST_F(BehindAGateway, oneRequestThatIsSwallowedStopsNobody)
+{
+  start(twoDrives("gateway_timeout: 3.0\n"));
+  turn(A, "a");
+  for (int time = 0; time < 10; ++time)
+  {
+    bus_->gateway().behaviour.swallow = 1;
+    for (int tenth = 0; tenth < 100; ++tenth)
+    {
+      bus_->run(0.1);
+      ASSERT_TRUE(online(A)) << time << " " << tenth;
+      ASSERT_TRUE(online(B)) << time << " " << tenth;
+    }
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << time;
   }
 }
 
@@ -177,9 +234,37 @@ TEST_F(BehindAGateway, aCloseInPlaceOfTheAnswerOfADeadUnitStopsNobodyElse)
     bus_->run(1.0);
     ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << second;
     ASSERT_TRUE(online(A)) << second;
+    ASSERT_LT(toSeconds(bus_->now() - bus_->status(A).stamp), 1.0) << "a closed connection keeps nobody waiting";
   }
   EXPECT_FALSE(online(B));
   EXPECT_FALSE(bus_->status(A).locked);
+}
+
+TEST_F(BehindAGateway, aStopThatClosesEachConnectionStopsNobodyElse)
+{
+  start();
+  bus_->gateway().behaviour.close_on_silence = true;
+  bus_->gateway().behaviour.silence = 0.2;
+  bus_->settleIn(20.0);
+  bus_->stream(A, 20.0, 0.1, 300.0);
+  bus_->stream(B, 20.0, 0.1, 2.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  // Away, and to be stopped before any read of it got lost.
+  bus_->world("b offline");
+  const auto box = bus_->stop(B);
+  for (int tenth = 0; tenth < 400; ++tenth)
+  {
+    bus_->run(0.1);
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << tenth;
+    ASSERT_TRUE(online(A)) << tenth;
+    ASSERT_LT(toSeconds(bus_->now() - bus_->status(A).stamp), 1.5) << tenth;
+    ASSERT_TRUE(tenth < 30 || !online(B)) << tenth;
+  }
+  EXPECT_FALSE(bus_->wait(box, 30.0).success);
+  bus_->world("b online");
+  EXPECT_TRUE(bus_->runUntil(30.0, [&] { return online(B) && !bus_->status(B).stop_active; }));
+  EXPECT_EQ(bus_->motor("b", "run_coil"), 0.0);
 }
 
 TEST_F(BehindAGateway, aConnectionThatIsClosedAgainAndAgainIsTriedOnceInTwoSeconds)
@@ -290,6 +375,67 @@ TEST_F(BehindAGateway, aRunThatIsCarriedOutAfterItsConnectionHasEndedIsStopped)
   EXPECT_TRUE(bus_->runUntil(20.0, [&] { return !bus_->status(A).stop_active; }));
   bus_->run(10.0);
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
+TEST_F(BehindAGateway, aRunThatWasUnderWayWhenItsConnectionWasLostIsStopped)
+{
+  for (const bool in_good_order : { false, true })
+  {
+    start();
+    bus_->settleIn(20.0);
+    // Another queue of the gateway carries it out 2 s later, when the stop over the next connection is long answered.
+    bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+    bus_->gateway().behaviour.hold_time = 2.0;
+    bus_->gateway().behaviour.hold_aside = true;
+    bus_->command(A, 20.0);
+    onHold([this, in_good_order] {
+      in_good_order ? bus_->gateway().hangUp() : bus_->gateway().cut();
+      bus_->stop(A);
+    });
+    ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") > 0.0; })) << "the old RUN";
+    EXPECT_TRUE(bus_->status(A).stop_active) << in_good_order;
+    EXPECT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; })) << in_good_order;
+    EXPECT_TRUE(bus_->runUntil(5.0, [&] { return !bus_->status(A).stop_active; })) << in_good_order;
+    bus_->run(10.0);
+    EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0) << in_good_order;
+  }
+}
+
+TEST_F(BehindAGateway, shutdownSleepsWhileAStopWaitsInTheGateway)
+{
+  start(twoDrives("gateway_timeout: 0.5\n"));
+  bus_->gateway().behaviour.silence = 0.4;
+  turn(A, "a");
+  bus_->stream(B, 20.0, 0.1, 3.0);
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B) && bus_->status(B).stop_active; }));
+  bus_->run(10.0);
+  // The gateway is silent for longer than the shutdown takes.
+  bus_->gateway().behaviour.mute = true;
+  bus_->coordinator().beginShutdown(bus_->now());
+  const TimePoint begun = bus_->now();
+  std::size_t rounds = 0;
+  EXPECT_TRUE(bus_->runUntil(20.0, [&] { return ++rounds > 2000 || bus_->coordinator().shutdownDone(bus_->now()); }));
+  EXPECT_LT(rounds, 500U);
+  EXPECT_LE(toSeconds(bus_->now() - begun), 10.1);
+  EXPECT_EQ(bus_->coordinator().endShutdown().size(), 2U) << "both are named";
+}
+
+TEST_F(BehindAGateway, nothingIsRepeatedThatAClosedConnectionMayHaveCarriedOut)
+{
+  start();
+  bus_->settleIn(20.0);
+  // The gateway takes the write (F002 = 1103, one word), and ends the connection before it answers.
+  bus_->gateway().behaviour.hold = { 0x01, 0x10, 0x11, 0x02 };
+  bus_->gateway().behaviour.hold_time = 1.0;
+  const auto box = bus_->writeParameter(A, "F002", 12.0, false);
+  onHold([this] { bus_->gateway().hangUp(); });
+  const bus::Answer answer = bus_->wait(box);
+  EXPECT_FALSE(answer.success);
+  EXPECT_EQ(answer.error_id, wire::ERROR_TIMEOUT);
+  bus_->run(3.0);
+  EXPECT_EQ(bus_->count("01 10 11 02"), 1U);
 }
 
 TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)

@@ -434,6 +434,30 @@ TEST(Toshiba, itsOwnTimeOutNeverPassesWhateverReplyIsLost)
   EXPECT_NEAR(bus.motor("pump", "frequency"), 20.0, 0.01);
 }
 
+TEST(Toshiba, itsOwnTimeOutIsMetThoughItWasRefusedForTheMomentAtConnect)
+{
+  VirtualBus bus(R"(
+port: /dev/virtual
+baud_rate: 19200
+parity: even
+interval: 1.4
+scan_list:
+  - {name: pump, node: 1, drive: toshiba_vfs15}
+simulation:
+  pump: {parameters: {F803: 1, F804: 2}}
+)");
+  const std::string reads_delay = "01 03 08 05 00 01";
+  ASSERT_TRUE(bus.runUntil(2.0, [&] {
+    return !bus.frames().empty() && bus.frames().back().drive == "pump" && bus.requests().back() == reads_delay;
+  }));
+  bus.world("pump exception 4 count 2");
+  bus.run(6.0);
+  // It may have tripped before it told.
+  bus.wait(bus.reset(0));
+  bus.run(60.0);
+  EXPECT_EQ(bus.motor("pump", "tripped"), 0.0);
+}
+
 TEST(Toshiba, isOfflineSoonAfterItWasSwitchedOff)
 {
   VirtualBus bus(DIRECT);

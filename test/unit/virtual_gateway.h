@@ -50,6 +50,8 @@ public:
     bool close_at_first_byte = false;
     /// Takes everything and carries out nothing.
     bool mute = false;
+    /// The next so many requests are neither carried out nor answered.
+    int swallow = 0;
     /// Nobody listens.
     bool gone = false;
     /// [s] until a connection stands.
@@ -59,6 +61,8 @@ public:
     /// The next request that begins so is kept for `hold_time` [s] before it goes onto the line, once.
     wire::Bytes hold;
     double hold_time = 0.0;
+    /// Others are not kept waiting by that, as where each connection has a queue of its own.
+    bool hold_aside = false;
     /// What it says before it ends a connection.
     std::string words;
   };
@@ -103,6 +107,12 @@ public:
   {
     closeByItself();
   }
+  /// The connection is lost, not closed in good order.
+  void cut()
+  {
+    closeByItself();
+    cut_ = true;
+  }
 
   // --- Port -----------------------------------------------------------------------------------------------------------
   wire::OpenResult open(std::string& error) override
@@ -129,6 +139,7 @@ public:
     inbox_.clear();
     outbox_.clear();
     hung_up_ = false;
+    cut_ = false;
     last_use_ = clock_.now();
     if (behaviour.close_at_once)
     {
@@ -175,13 +186,18 @@ public:
     pump();
     if (hung_up_)
     {
-      loss_ = wire::Loss::ClosedByPeer;
+      loss_ = cut_ ? wire::Loss::Gone : wire::Loss::ClosedByPeer;
       return false;
     }
     last_use_ = clock_.now();
     if (behaviour.close_at_first_byte)
     {
       closeByItself();
+      return true;
+    }
+    if (behaviour.swallow > 0)
+    {
+      --behaviour.swallow;
       return true;
     }
     if (!behaviour.mute)
@@ -206,7 +222,7 @@ public:
       }
       if (hung_up_)
       {
-        loss_ = wire::Loss::ClosedByPeer;
+        loss_ = cut_ ? wire::Loss::Gone : wire::Loss::ClosedByPeer;
         return wire::ReceiveResult::Gone;
       }
       if (clock_.now() >= deadline)
@@ -298,6 +314,11 @@ private:
     if (!busy_)
     {
       reply_.clear();
+      if (aside_ && now >= aside_at_)
+      {
+        queue_.push_front(*aside_);
+        aside_.reset();
+      }
       return !queue_.empty() && now >= ready_at_ && begin(now);
     }
     if (reply_.empty() ? now < give_up_at_ : now < last_byte_ + seconds(gap_))
@@ -316,6 +337,13 @@ private:
     {
       ++held_;
       behaviour.hold.clear();
+      if (behaviour.hold_aside)
+      {
+        aside_ = queue_.front();
+        aside_at_ = now + seconds(behaviour.hold_time);
+        queue_.pop_front();
+        return true;
+      }
       ready_at_ = now + seconds(behaviour.hold_time);
       return true;
     }
@@ -434,6 +462,10 @@ private:
     {
       consider(ready_at_);
     }
+    if (aside_)
+    {
+      consider(std::max(aside_at_, ready_at_));
+    }
     if (behaviour.idle_close > 0.0 && open_)
     {
       consider(last_use_ + seconds(behaviour.idle_close));
@@ -446,6 +478,7 @@ private:
   double gap_;
   bool open_ = false;
   bool hung_up_ = false;
+  bool cut_ = false;
   wire::Loss loss_ = wire::Loss::None;
   std::optional<TimePoint> dialling_;
   unsigned connection_ = 0;
@@ -458,6 +491,8 @@ private:
   wire::Bytes inbox_;
   wire::Bytes outbox_;
   std::deque<Job> queue_;
+  std::optional<Job> aside_;
+  TimePoint aside_at_;
   bool busy_ = false;
   Job job_;
   int tried_ = 0;

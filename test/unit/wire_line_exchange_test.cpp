@@ -285,6 +285,19 @@ TEST_F(LineQuietBefore, countsFromTheLastByteReceived)
   EXPECT_EQ(first.finished_at + milliseconds(7), line_.exchange(request_).sent_at);
 }
 
+TEST_F(LineQuietBefore, aPortThatIsGoneMeanwhileEndsAnExchangeThatHasTakenNoTime)
+{
+  answerNext(REPLY);
+  ask(READ);
+  EXPECT_TRUE(line_.settle());
+  const TimePoint begun = clock_.now();
+  port_.unplug();
+  const Reply reply = line_.exchange(request_);
+  EXPECT_EQ(Outcome::PortLost, reply.outcome);
+  EXPECT_EQ(begun, reply.sent_at);
+  EXPECT_EQ(0U, reply.ticket) << "nothing was sent";
+}
+
 TEST_F(LineQuietBefore, countsFromTheLastByteSent)
 {
   const Reply first = line_.exchange(requestOf(withCrc("00 06 FA 00 C0 00")));

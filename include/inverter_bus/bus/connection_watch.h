@@ -53,6 +53,8 @@ public:
   // --- what follows ---------------------------------------------------------------------------------------------------
   /// Between an orderly close and the next open connection.
   bool resuming() const;
+  /// Several connections in a row were closed in place of its answers, and nobody has answered in between.
+  bool closedAgain(std::size_t inverter) const;
   /// The next inverter to be read before any write; nothing: all have been.
   std::optional<std::size_t> toRead() const;
   /// Everybody who was online was asked after the reopening, and nobody answered.

@@ -105,7 +105,7 @@ public:
   /// It is opened anew for any other reason of ours: motors run on.
   void reopening(TimePoint now);
   /// It leads to a telnet server, and everything that may be sent to one was: close it (closedForTelnet()).
-  bool telnetOver(TimePoint now) const;
+  bool telnetOver(TimePoint now);
   void closedForTelnet(TimePoint now);
 
   void beginShutdown(TimePoint now);
@@ -302,6 +302,8 @@ private:
   bool behind_another_ = false;
   /// To whom the last request went, if it was not answered.
   std::optional<std::size_t> last_unanswered_;
+  /// The connection leads to a telnet server, and everybody was given up because of it.
+  bool telnet_ = false;
   std::size_t resumed_ = 0;
   std::optional<TimePoint> resumed_logged_at_;
 

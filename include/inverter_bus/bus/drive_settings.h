@@ -54,6 +54,9 @@ public:
   bool pending() const;
   wire::Request next() const;
   void done(const wire::Reply& reply);
+  /// How long the next exchange of the lowest class is to wait: 0, or, when all that is left was refused for the moment,
+  /// 1 s, doubled with each refusal up to 64 s.
+  Duration pauseBeforeNext() const;
   /// A parameter was written through the node: what it means may have changed.
   void reread(const std::string& parameter);
   /// A command of ours is in force: who commands the drive can be seen only now. Again: it is looked at anew.
@@ -99,6 +102,8 @@ private:
     State state = State::Unread;
     /// Known, but to be read anew.
     bool again = false;
+    /// In a row, each of them of the moment.
+    unsigned refusals = 0;
     std::uint32_t raw = 0;
     double value = 0.0;
   };

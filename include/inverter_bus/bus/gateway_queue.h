@@ -50,8 +50,8 @@ public:
   bool active() const;
 
   // --- what happened --------------------------------------------------------------------------------------------------
-  /// A request has left for \p inverter.
-  void sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk);
+  /// A request has left for \p inverter; \p probe: it is paid from the probes' share of the time.
+  void sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk, bool probe = false);
   /// It was answered in time, by the drive or by the gateway.
   void answered(TimePoint now, std::uint64_t ticket);
   /// Our own time-out has passed.
@@ -63,13 +63,14 @@ public:
     GatewayRisk risk = GatewayRisk::None;
     /// It was alone in the gateway, so that a longer `response_timeout` would have caught its answer.
     bool alone = false;
+    bool probe = false;
   };
   /// The answer came after all; empty for a ticket that is not owed an answer any more.
   std::optional<Late> answeredLate(TimePoint now, std::uint64_t ticket);
   /// The connection has ended: no answer comes any more, but what was under way may still be carried out.
   void connectionEnded(TimePoint now);
   /// Time has passed: what was waited for long enough is not owed any more. Returns the time that the gateway was kept for
-  /// nothing by one that was given up now.
+  /// nothing by a probe that was given up now.
   std::optional<Duration> tick(TimePoint now);
 
   // --- what may go ----------------------------------------------------------------------------------------------------
@@ -89,6 +90,9 @@ public:
   // --- what it has learned --------------------------------------------------------------------------------------------
   /// How long the last request that nobody answered in time has kept the gateway; 0: none has.
   Duration block() const;
+  /// How long nothing but stops may go because of one lost request, by what is known now: block(), or while one is waited
+  /// for, the wait.
+  Duration longestPause() const;
   /// It leaves requests unanswered for ever, as a server without a line behind it does.
   bool silentByNature() const;
   /// How long a lost request is waited for, counted from when it was sent.
@@ -102,6 +106,7 @@ private:
     std::uint64_t ticket = 0;
     std::size_t inverter = 0;
     GatewayRisk risk = GatewayRisk::None;
+    bool probe = false;
     TimePoint sent_at;
     /// Our time-out has passed without an answer.
     bool lost = false;

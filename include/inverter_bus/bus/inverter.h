@@ -257,6 +257,8 @@ private:
   TimePoint last_reply_;
   bool ever_answered_ = false;
   TimePoint silence_until_;
+  /// All settings that are left were refused for the moment.
+  TimePoint refused_setting_not_before_;
   Duration slowest_reply_{ 0 };
   Duration latest_late_reply_{ 0 };
   std::uint64_t returns_ = 0;

@@ -73,6 +73,8 @@ struct Gate
   bool stops_only = false;
   /// When that ends.
   TimePoint until;
+  /// Somebody else waits for an exchange meanwhile: a stop that insists lets it through.
+  bool others_wait = false;
   /// Offline inverters without a pending stop may be probed.
   bool bare_probes = true;
 };
@@ -206,6 +208,7 @@ private:
   Pick chooseBehindGateway(TimePoint now, const std::vector<InverterView>& views, const Gate& gate);
   std::optional<Pick> chooseBehindStops(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> chooseGoingOn(TimePoint now, const std::vector<InverterView>& views);
+  bool commandsGiveWay(TimePoint now, const std::vector<InverterView>& views) const;
   std::optional<Pick> chooseInTurn(TimePoint now, const std::vector<InverterView>& views);
   std::optional<Pick> pickReadSoon(TimePoint now, const std::vector<InverterView>& views) const;
   std::optional<Pick> chooseForAnother(TimePoint now, const std::vector<InverterView>& views);
@@ -256,6 +259,8 @@ private:
 
   // commands and refreshes
   unsigned commands_in_a_row_ = 0;
+  /// Since the last refresh that no deadline had begun.
+  unsigned commands_since_turn_ = 0;
   unsigned exchanges_without_background_ = 0;
   unsigned deadlines_in_a_row_ = 0;
   /// Refreshes that a deadline began and that need another read.

@@ -257,6 +257,7 @@ void Checker::stepped(TimePoint now)
     endExchange(now);
   }
   checkOverdue(now);
+  checkBlindness(now);
   for (const auto& call : calls_)
   {
     if (now > call.second.until + scene_.longestExchange() + babble(now))

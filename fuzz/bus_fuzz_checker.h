@@ -224,6 +224,7 @@ private:
   void noteHeard(TimePoint end, std::size_t index);
   void checkTurn(TimePoint now);
   bool waits(TimePoint now, std::size_t index) const;
+  void checkBlindness(TimePoint now) const;
   void checkWentOffline(TimePoint now, std::size_t index) const;
   void payProbe(TimePoint now, Duration cost);
   void checkBackground(TimePoint now);

@@ -62,6 +62,22 @@ void Checker::checkTurn(TimePoint now)
   turn_began_ = now;
 }
 
+/// An inverter that has shown no complete status for so long is published as offline, whatever else it answers.
+void Checker::checkBlindness(TimePoint now) const
+{
+  for (std::size_t index = 0; index < lanes_.size(); ++index)
+  {
+    const Lane& lane = lanes_[index];
+    const Duration blind = now - lane.status.stamp;
+    if (connected_ && !shutting_down_ && lane.online && blind > seconds(scene_.longestBlindness()) + babble(now))
+    {
+      fail(now, "alive means data",
+           nameOf(index) + " is shown as online, its last complete status is " + std::to_string(toSeconds(blind)) +
+               " s old");
+    }
+  }
+}
+
 /// Nobody is offline because others are.
 void Checker::checkWentOffline(TimePoint now, std::size_t index) const
 {

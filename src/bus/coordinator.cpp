@@ -404,7 +404,7 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     return current;
   }
   current.purpose = Purpose::Refresh;
-  const bool resync = inverter.loopback.usable() && inverter.drive.loopback(inverter.config.node, 0);
+  const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   if (inverter.refresh.begins())
   {
     inverter.liveness.turn(now);
@@ -591,7 +591,7 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     return true;
   }
   const auto loopback =
-      inverter.loopback.usable() ? inverter.drive.loopback(inverter.config.node, ++loopback_number_) : std::nullopt;
+      inverter.loopbackUsable() ? inverter.drive.loopback(inverter.config.node, ++loopback_number_) : std::nullopt;
   if (loopback)
   {
     const Duration timeout = current.request.response_timeout;

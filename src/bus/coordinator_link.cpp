@@ -74,6 +74,18 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   }
 }
 
+/// Once: what it does differs from what its users expect.
+void Coordinator::tellOfTheGateway()
+{
+  if (gateway_.silentByNature() && !told_of_gateway_)
+  {
+    told_of_gateway_ = true;
+    log(Level::Warn, "port " + configuration_.bus.port +
+                         ": requests to a silent station are left unanswered: from now on " +
+                         wire::shownDuration(gateway_.wait()) + " is waited for instead of gateway_timeout");
+  }
+}
+
 /// Contract, 8.8: what follows a lost request would wait behind it, in the gateway.
 Gate Coordinator::gate(TimePoint now)
 {
@@ -82,6 +94,7 @@ Gate Coordinator::gate(TimePoint now)
   {
     scheduler_->chargeProbe(now, *kept);
   }
+  tellOfTheGateway();
   gate.stops_only = !gateway_.free(now);
   gate.until = gateway_.freeAt(now);
   gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {

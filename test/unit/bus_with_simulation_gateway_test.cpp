@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 // A whole bus behind a Modbus TCP gateway, in virtual time (contract, 8.8 to 8.10, 8.16).
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -426,6 +427,22 @@ TEST_F(BehindAGateway, pendingStopsGoOverEachTelnetConnection)
   bus_->run(20.0);
   EXPECT_LE(bus_->telnet().connections().size() - before, 16U) << "one in 2 s";
   EXPECT_FALSE(online(A));
+}
+
+TEST_F(BehindAGateway, thatItIsSilentByNatureIsSaidOnce)
+{
+  start();
+  bus_->gateway().behaviour.silent_code = 0;
+  bus_->gateway().behaviour.silence = 0.1;
+  turn(A, "a");
+  bus_->world("b offline");
+  bus_->run(120.0);
+  const auto lines = bus_->logTexts();
+  EXPECT_EQ(
+      std::count_if(lines.begin(), lines.end(),
+                    [](const std::string& line) { return line.find("are left unanswered") != std::string::npos; }),
+      1);
+  EXPECT_TRUE(online(A));
 }
 
 TEST_F(BehindAGateway, shutdownSleepsWhileAStopWaitsInTheGateway)

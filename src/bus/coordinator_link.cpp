@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 #include <algorithm>
+#include <tuple>
 
 #include "inverter_bus/bus/coordinator.h"
 #include "inverter_bus/wire/shown_number.h"
@@ -16,7 +17,7 @@ namespace
 {
 // Contract, 8.9: one line a minute.
 constexpr double RESUMED_LOG_PERIOD_S = 60.0;
-// Failed attempts at a stop over a telnet connection before it is closed: a second one would wait for the probes' turn.
+// Failed attempts at a stop over a telnet connection before it is closed.
 constexpr unsigned TELNET_STOP_ATTEMPTS = 1;
 // How soon a write is looked at again that waits for the first valid reply of a connection.
 constexpr double UNPROVEN_PERIOD_S = 0.02;
@@ -73,6 +74,18 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   }
 }
 
+/// Once: what it does differs from what its users expect.
+void Coordinator::tellOfTheGateway()
+{
+  if (gateway_.silentByNature() && !told_of_gateway_)
+  {
+    told_of_gateway_ = true;
+    log(Level::Warn, "port " + configuration_.bus.port +
+                         ": requests to a silent station are left unanswered: from now on " +
+                         wire::shownDuration(gateway_.wait()) + " is waited for instead of gateway_timeout");
+  }
+}
+
 /// Contract, 8.8: what follows a lost request would wait behind it, in the gateway.
 Gate Coordinator::gate(TimePoint now)
 {
@@ -81,6 +94,7 @@ Gate Coordinator::gate(TimePoint now)
   {
     scheduler_->chargeProbe(now, *kept);
   }
+  tellOfTheGateway();
   gate.stops_only = !gateway_.free(now);
   gate.until = gateway_.freeAt(now);
   gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {
@@ -372,7 +386,13 @@ void Coordinator::reopening(TimePoint now)
   gateway_.connectionEnded(now);
 }
 
-/// Only stops go over a telnet connection, and then it is closed. Whatever runs is stopped over it, as far as it carries.
+/// Its stop has had its attempts on this connection, in vain.
+bool Coordinator::triedOverTelnet(const Inverter& inverter) const
+{
+  return inverter.stop.attempts() >= attempts_at_open_[inverter.index] + TELNET_STOP_ATTEMPTS;
+}
+
+/// Only stops go over a telnet connection, those of offline inverters as well, and then it is closed.
 bool Coordinator::telnetOver(TimePoint now)
 {
   if (!line_.telnetFound())
@@ -384,9 +404,28 @@ bool Coordinator::telnetOver(TimePoint now)
     telnet_ = true;
     loseEverybody(now, wire::ERROR_PORT_LOST);
   }
-  return std::none_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
-    return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
-  });
+  return std::none_of(inverters_.begin(), inverters_.end(),
+                      [this](const auto& inverter) { return inverter->stop.pending() && !triedOverTelnet(*inverter); });
+}
+
+Pick Coordinator::pickOverTelnet(TimePoint now) const
+{
+  const auto key = [](const Inverter& inverter) {
+    return std::make_tuple(inverter.silent(), inverter.stop.attempts(), inverter.stop.lastSentAt());
+  };
+  Pick pick;
+  pick.wake = now;
+  for (const auto& inverter : inverters_)
+  {
+    const bool due = inverter->stop.pending() && !triedOverTelnet(*inverter);
+    if (due && (pick.what == Pick::What::Nothing || key(*inverter) < key(*inverters_[pick.inverter])))
+    {
+      pick.what = Pick::What::Stop;
+      pick.inverter = inverter->index;
+      pick.probe = inverter->silent();
+    }
+  }
+  return pick;
 }
 
 void Coordinator::closedForTelnet(TimePoint now)

@@ -774,6 +774,7 @@ void Coordinator::portOpened(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     inverter->refresh_not_before = now;
+    attempts_at_open_[inverter->index] = inverter->stop.attempts();
     if (!inverter->known())
     {
       inverter->liveness.watchFrom(now);

@@ -215,6 +215,7 @@ private:
   void noteConnection(TimePoint now, const Current& current, const wire::Reply& reply);
   void noteLink(const wire::Reply& reply);
   Gate gate(TimePoint now);
+  void tellOfTheGateway();
   Duration probePrice(const Current& current, const wire::Reply& reply) const;
   TimePoint stopNotBefore(TimePoint now, const Inverter& inverter) const;
   void stopInsteadOfZeros(TimePoint now);
@@ -230,6 +231,8 @@ private:
   Pick pick(TimePoint now);
   bool untested(const Inverter& inverter) const;
   bool mustWait(TimePoint now, const Current& current);
+  Pick pickOverTelnet(TimePoint now) const;
+  bool triedOverTelnet(const Inverter& inverter) const;
 
   // loop
   void watchDeadMen(TimePoint now);
@@ -304,6 +307,9 @@ private:
   std::optional<std::size_t> last_unanswered_;
   /// The connection leads to a telnet server, and everybody was given up because of it.
   bool telnet_ = false;
+  bool told_of_gateway_ = false;
+  /// Attempts at each pending stop when the connection was opened.
+  std::vector<unsigned> attempts_at_open_;
   std::size_t resumed_ = 0;
   std::optional<TimePoint> resumed_logged_at_;
 

@@ -718,6 +718,10 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
   link_.answered();
   const auto request = gateway_.answeredLate(now, late.ticket);
+  if (request)
+  {
+    othersFirst(now, *inverters_[request->inverter]);
+  }
   const bool alone = !gateway_.active() || (request && request->alone);
   if (request && request->alone && request->probe)
   {
@@ -770,7 +774,9 @@ void Coordinator::portOpened(TimePoint now)
   ever_opened_ = true;
   link_.opened(now);
   telnet_ = false;
-  const bool same = connection_.resuming();
+  last_unanswered_.reset();
+  const bool same = connection_.resuming() || renewing_;
+  renewing_ = false;
   // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
   scheduler_->restartCycle(now, !same && connection_.closedUnused() == 0);
   connection_.opened(now, onlineInverters());
@@ -784,6 +790,7 @@ void Coordinator::portOpened(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     inverter->refresh_not_before = now;
+    attempts_at_open_[inverter->index] = inverter->stop.attempts();
     if (!inverter->known())
     {
       inverter->liveness.watchFrom(now);
@@ -866,7 +873,9 @@ void Coordinator::beginShutdown(TimePoint now)
 {
   shutting_down_ = true;
   const double two_exchanges_each = 2.0 * toSeconds(budget_.longest_exchange) * static_cast<double>(inverters_.size());
-  shutdown_deadline_ = now + seconds(std::min(10.0, std::max(2.0, two_exchanges_each)));
+  // Never over 10 s (contract, 4.4), the exchange that is under way then included.
+  const double longest = std::max(2.0, 9.9 - toSeconds(budget_.longest_exchange));
+  shutdown_deadline_ = now + seconds(std::min(longest, std::max(2.0, two_exchanges_each)));
   for (const auto& inverter : inverters_)
   {
     failJobs(inverter->index, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));

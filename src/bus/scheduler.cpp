@@ -875,9 +875,14 @@ void Scheduler::restartCycle(TimePoint now, bool probes_at_once)
   pause_until_ = now;
   if (probes_at_once)
   {
-    next_probe_ = now;
-    std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
+    restartProbes(now);
   }
+}
+
+void Scheduler::restartProbes(TimePoint now)
+{
+  next_probe_ = now;
+  std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
 }
 }  // namespace bus
 }  // namespace inverter_bus

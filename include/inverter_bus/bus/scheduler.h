@@ -177,6 +177,8 @@ public:
   std::uint64_t exchanges() const;
   /// The whole bus starts afresh (port opened again). \p probes_at_once: what probes have cost before doesn't count.
   void restartCycle(TimePoint now, bool probes_at_once = true);
+  /// What probes have cost before doesn't count.
+  void restartProbes(TimePoint now);
 
 private:
   struct Ticket

@@ -195,6 +195,7 @@ private:
 
     /// Frames of velocities in a row that were not answered.
     int lost_frames = 0;
+    TimePoint reset_at;
 
     // supervision
     std::optional<TimePoint> last_heard;
@@ -238,6 +239,7 @@ private:
 
   // motion
   void watchDeadMen(TimePoint now);
+  bool decidedBefore(TimePoint now, TimePoint time) const;
   void checkStopFirst(TimePoint now);
   void checkOverdue(TimePoint now);
   void checkMotion(TimePoint now);

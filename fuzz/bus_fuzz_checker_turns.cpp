@@ -17,6 +17,8 @@ namespace
 constexpr double BARRED_S = 3.0;
 // Of a drive's own time-out: before it has passed, the drive is not late yet, but it has the next turn.
 constexpr double NEAR_SHARE = 0.95;
+// A VF-S15 is given 3 s to start anew after a reset (E6581913), with the exchange under way and its repeats.
+constexpr double DEAF_AFTER_RESET_S = 4.0;
 // Coarser than the rounding of every brand.
 constexpr double SET_POINT_STEP_HZ = 0.051;
 }  // namespace
@@ -86,7 +88,9 @@ void Checker::checkBlindness(TimePoint now) const
   {
     const Lane& lane = lanes_[index];
     const Duration blind = now - lane.status.stamp;
-    if (connected_ && !shutting_down_ && lane.online && blind > seconds(scene_.longestBlindness()) + babble(now))
+    const bool deaf = lane.reset_at != TimePoint() && now - lane.reset_at < seconds(DEAF_AFTER_RESET_S);
+    if (connected_ && !shutting_down_ && lane.online && !deaf &&
+        blind > seconds(scene_.longestBlindness()) + babble(now))
     {
       fail(now, "alive means data",
            nameOf(index) + " is shown as online, its last complete status is " + std::to_string(toSeconds(blind)) +

@@ -486,12 +486,11 @@ TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)
 {
   start();
   turn(A, "a");
-  bus_->gateway().behaviour.silence = 1.0;
-  bus_->world("b offline");
-  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().blocked() > 0.0; }));
-  bus_->run(1.2);
-  bus_->wait(bus_->stop(A));
-  bus_->run(2.0);
+  // The gateway is busy with a read when the stop comes.
+  bus_->gateway().behaviour.hold = { 0x02, 0x01 };
+  bus_->gateway().behaviour.hold_time = 1.0;
+  onHold([this] { bus_->stop(A); });
+  bus_->run(4.0);
   EXPECT_GT(bus_->busStatuses().back().stop_latency_max, 0.3);
 }
 

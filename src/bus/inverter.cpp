@@ -28,6 +28,8 @@ constexpr double RUN_EVIDENCE_S = 0.5;
 // Loop-backs that may be left unanswered; contract, 8.8, for those over TCP.
 constexpr unsigned MOST_MISSED_LOOPBACKS = 3;
 constexpr unsigned MOST_MISSED_LOOPBACKS_TCP = 1;
+// A drive that has answered so lately is there.
+constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
@@ -701,6 +703,7 @@ InverterStatus Inverter::status(TimePoint now) const
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
   status.communication_error = offline_;
+  status.refuses = offline_ && liveness.refusesForTheMoment() && now - last_reply_ < seconds(LATELY_S);
   if (!status.communication_error)
   {
     status.monitor = refresh.monitor(now);

@@ -489,7 +489,9 @@ TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)
   bus_->gateway().behaviour.silence = 1.0;
   bus_->world("b offline");
   ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().blocked() > 0.0; }));
-  bus_->run(1.2);
+  // Just after the next request to the dead one.
+  bus_->clearFrames();
+  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->count("02 ") > 0; }));
   bus_->wait(bus_->stop(A));
   bus_->run(2.0);
   EXPECT_GT(bus_->busStatuses().back().stop_latency_max, 0.3);

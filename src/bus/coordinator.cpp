@@ -490,7 +490,7 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
     {
       if (write->starts && inverter.mustBeSeenRunning())
       {
-        scheduler_->splitOff(pick.command, member, next_command_++, now + seconds(STATUS_WAIT_S));
+        scheduler_->splitOff(pick.command, member, next_command_++, now + seconds(STATUS_WAIT_S), false);
         continue;
       }
       Current current;
@@ -609,7 +609,8 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   if (current.purpose == Purpose::Velocity)
   {
     // The other members of a group don't wait for it.
-    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed);
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed,
+                         inverter.movement.target() && inverter.movement.target()->zero);
   }
   else if (current.purpose == Purpose::Job)
   {

@@ -72,6 +72,17 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   {
     gateway_.lost(reply.finished_at, reply.ticket);
   }
+  if (!isAnswered(reply))
+  {
+    othersFirst(gateway_.freeAt(reply.finished_at), *inverters_[current.inverter]);
+  }
+}
+
+/// Whoever has kept the gateway waits until everybody else was refreshed once, counted from when it is free again: else only
+/// one exchange would go between two blocks.
+void Coordinator::othersFirst(TimePoint free_at, Inverter& inverter)
+{
+  inverter.refresh_not_before = free_at + budget_.cycle;
 }
 
 /// Once: what it does differs from what its users expect.
@@ -346,14 +357,17 @@ std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
 
 void Coordinator::noteLink(const wire::Reply& reply)
 {
-  if (isAnswered(reply) || reply.gateway_code != 0)
-  {
-    link_.answered();
-  }
-  else
+  if (!isAnswered(reply) && reply.gateway_code == 0)
   {
     link_.lost(reply.sent_at);
+    return;
   }
+  if (link_.wasSilent(reply.finished_at))
+  {
+    // What probes have cost meanwhile has delayed nobody.
+    scheduler_->restartProbes(reply.finished_at);
+  }
+  link_.answered();
 }
 
 bool Coordinator::renewalDue(TimePoint now) const
@@ -377,7 +391,9 @@ void Coordinator::renewing(TimePoint now)
   }
   // So long without an answer is no gap any more: whatever runs is to be stopped first when somebody answers again.
   loseEverybody(now, wire::ERROR_TIMEOUT);
-  reopening(now);
+  connection_.lost();
+  gateway_.connectionEnded(now);
+  renewing_ = true;
 }
 
 void Coordinator::reopening(TimePoint now)

@@ -214,6 +214,7 @@ private:
   void noteGateway(const Current& current, const wire::Reply& reply);
   void noteConnection(TimePoint now, const Current& current, const wire::Reply& reply);
   void noteLink(const wire::Reply& reply);
+  void othersFirst(TimePoint free_at, Inverter& inverter);
   Gate gate(TimePoint now);
   void tellOfTheGateway();
   Duration probePrice(const Current& current, const wire::Reply& reply) const;
@@ -305,6 +306,8 @@ private:
   bool behind_another_ = false;
   /// To whom the last request went, if it was not answered.
   std::optional<std::size_t> last_unanswered_;
+  /// The link is being opened anew because it was mute.
+  bool renewing_ = false;
   /// The connection leads to a telnet server, and everybody was given up because of it.
   bool telnet_ = false;
   bool told_of_gateway_ = false;

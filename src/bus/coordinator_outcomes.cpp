@@ -813,12 +813,15 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     return;
   }
+  const bool news = connected_ || !port_complained_;
   connected_ = false;
+  renewing_ = false;
   last_error_ = wire::ERROR_PORT_LOST;
   port_failing_ = false;
   port_error_ = error;
-  if (!port_complained_)
+  if (news)
   {
+    // Also when it was told of before: what was there over a connection since is gone now.
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
         error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);

@@ -277,6 +277,7 @@ void Checker::endExchange(TimePoint now)
   {
     return;
   }
+  noteFailedRead();
   Lane& lane = lanes_[*facts_.inverter];
   if (!answered_)
   {
@@ -676,6 +677,12 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
     // It may have stopped long ago what had never started.
     lane.locked_at = accepted_at;
     lane.open_at = accepted_at;
+  }
+  if (!lane.heard_of || status.stamp != lane.status.stamp || status.communication_error)
+  {
+    lane.failed_reads = 0;
+    lane.pause_before = lane.pause;
+    lane.pause = Duration{ 0 };
   }
   tryOpen(now, lane);
   lane.heard_of = true;

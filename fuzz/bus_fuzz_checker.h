@@ -181,6 +181,12 @@ private:
 
     // status
     unsigned statuses_tripped = 0;  ///< complete ones, with other stamps, since the drive has tripped
+    unsigned failed_reads = 0;      ///< of its status, since the last complete one
+    TimePoint asked_at;             ///< the last of these reads
+    /// The longest time without one since the last complete status, and before that.
+    Duration pause{ 0 };
+    Duration pause_before{ 0 };
+    TimePoint deaf_until;  ///< after a reset
     bool heard_of = false;
     bool online = false;
     TimePoint online_since;
@@ -229,6 +235,7 @@ private:
   void checkBounded(TimePoint now) const;
   bool waits(TimePoint now, std::size_t index) const;
   void checkBlindness(TimePoint now) const;
+  void noteFailedRead();
   void checkWentOffline(TimePoint now, std::size_t index) const;
   void payProbe(TimePoint now, Duration cost);
   void checkBackground(TimePoint now);

@@ -450,6 +450,26 @@ TEST_F(BehindAGateway, pendingStopsGoOverEachTelnetConnection)
   EXPECT_FALSE(online(A));
 }
 
+TEST_F(BehindAGateway, shutdownOutlastsARunThatIsUnderWay)
+{
+  start();
+  bus_->settleIn(20.0);
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+  bus_->gateway().behaviour.hold_time = 2.7;
+  bus_->gateway().behaviour.hold_aside = true;
+  bus_->command(A, 20.0);
+  onHold([this] { bus_->gateway().hangUp(); });
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->gateway().closed() > 0; }));
+  bus_->run(0.1);
+  bus_->coordinator().beginShutdown(bus_->now());
+  const TimePoint begun = bus_->now();
+  EXPECT_TRUE(bus_->runUntil(20.0, [&] { return bus_->coordinator().shutdownDone(bus_->now()); }));
+  EXPECT_LE(toSeconds(bus_->now() - begun), 10.0);
+  EXPECT_EQ(bus_->coordinator().endShutdown().size(), 0U);
+  bus_->pass(5.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
 TEST_F(BehindAGateway, thatItIsSilentByNatureIsSaidOnce)
 {
   start();

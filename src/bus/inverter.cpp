@@ -273,7 +273,9 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 bool Inverter::connectDue(TimePoint now) const
 {
-  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
+  // Nothing but reads goes to a port of the drive's own before it has told its status (contract, 8.8).
+  const bool must_wait = config.ownPort() && !ever_known_ && settings.nextWrites();
+  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent() && !must_wait;
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)

@@ -405,10 +405,6 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
   }
   current.purpose = Purpose::Refresh;
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
-  if (inverter.refresh.begins())
-  {
-    inverter.liveness.turn(now);
-  }
   drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);
   while (!resync && !line_.mayAsk(current.request) && inverter.refresh.skipSlow())

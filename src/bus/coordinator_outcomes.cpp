@@ -90,6 +90,10 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     noteConnection(reply.finished_at, current, reply);
   }
   inverter.noteCost(current.pick.probe, reply.outcome, probePrice(current, reply));
+  if (current.request.expects_reply && !alive(reply) && !behind_another_)
+  {
+    inverter.liveness.missed(reply.error_id);
+  }
   if (current.request.expects_reply && alive(reply))
   {
     inverter.answered(reply);
@@ -714,7 +718,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
   link_.answered();
   const auto request = gateway_.answeredLate(now, late.ticket);
-  if (request)
+  if (request && request->risk == GatewayRisk::None)
   {
     othersFirst(now, *inverters_[request->inverter]);
   }

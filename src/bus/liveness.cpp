@@ -57,12 +57,6 @@ bool Liveness::needsRead() const
   return failures_ >= offline_after_ && !read_failed_;
 }
 
-void Liveness::turn(TimePoint now)
-{
-  turn_period_ = turn_at_ ? now - *turn_at_ : Duration::zero();
-  turn_at_ = now;
-}
-
 void Liveness::watchFrom(TimePoint time)
 {
   since_ = std::max(since_, time);
@@ -78,10 +72,14 @@ void Liveness::complete(TimePoint now)
   dataRead();
 }
 
+void Liveness::missed(std::uint16_t error_id)
+{
+  last_error_ = error_id;
+}
+
 bool Liveness::overdue(TimePoint now, Duration period) const
 {
-  const Duration patience =
-      std::max(seconds(SHORTEST_PATIENCE_S), PERIODS_OF_PATIENCE * std::max(period, turn_period_));
+  const Duration patience = std::max(seconds(SHORTEST_PATIENCE_S), PERIODS_OF_PATIENCE * period);
   return last_error_ != 0 && now - since_ > patience;
 }
 

@@ -234,11 +234,6 @@ void Refresh::planSlow(TimePoint now)
   }
 }
 
-bool Refresh::begins() const
-{
-  return position_ >= plan_.size();
-}
-
 bool Refresh::takeRefusal()
 {
   const bool refused = run_refused_;

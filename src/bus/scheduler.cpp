@@ -19,7 +19,7 @@ constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 constexpr std::uint64_t INSISTING_SPACING = 1;
 // A stop that was tried so often in vain leaves half of the time to the others: a drive that loses every write for hours,
 // or a wire, must not make the driver blind for its neighbours.
-constexpr unsigned STOP_ATTEMPTS_BEFORE_PATIENCE = 10;
+constexpr unsigned STOP_ATTEMPTS_BEFORE_PATIENCE = 6;
 // Rule 3.14: the lowest class gets at least every eighth exchange.
 constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
 // A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.

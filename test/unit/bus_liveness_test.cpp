@@ -91,23 +91,21 @@ TEST(Liveness, oneThatIsReadSeldomHasThreeOfItsPeriods)
   EXPECT_TRUE(liveness.overdue(at(31001), Ms(10000)));
 }
 
-TEST(Liveness, turnsThatOthersMakeRareAreNotItsFault)
-{
-  Liveness liveness(3);
-  liveness.complete(at(0));
-  liveness.turn(at(0));
-  liveness.turn(at(4000));
-  liveness.noteRead(LONG, silence());
-  EXPECT_FALSE(liveness.overdue(at(12000), Ms(100)));
-  EXPECT_TRUE(liveness.overdue(at(12001), Ms(100)));
-}
-
 TEST(Liveness, oneThatWasNotAskedIsNotOverdue)
 {
   Liveness liveness(3);
   liveness.complete(at(0));
   liveness.noteRead(LONG, good());
   EXPECT_FALSE(liveness.overdue(at(60000), Ms(100)));
+}
+
+TEST(Liveness, aMissingStatusIsItsOwnOnceItHasLostAnything)
+{
+  Liveness liveness(3);
+  liveness.complete(at(0));
+  liveness.missed(wire::ERROR_TIMEOUT);
+  EXPECT_TRUE(liveness.overdue(at(2001), Ms(100)));
+  EXPECT_EQ(liveness.lastError(), wire::ERROR_TIMEOUT);
 }
 
 TEST(Liveness, aCompleteStatusForgivesEverything)

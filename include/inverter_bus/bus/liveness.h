@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 
 #include "inverter_bus/wire/request.h"
@@ -35,14 +34,14 @@ public:
   bool needsRead() const;
 
   // --- the age of the status ------------------------------------------------------------------------------------------
-  /// A refresh begins.
-  void turn(TimePoint now);
   /// The watch begins at this time: nothing that came before was to be expected (start-up, a reset's deaf time).
   void watchFrom(TimePoint time);
   void complete(TimePoint now);
-  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked and did not tell. \p period is the longest
-  /// time between two refreshes of this inverter as the configuration has it; where turns lie further apart (others that
-  /// don't answer), that counts.
+  /// An exchange of any kind was lost: from now on a missing status is the inverter's own.
+  void missed(std::uint16_t error_id);
+  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked and did not tell: who was not asked, because
+  /// others took the time, is not to blame. \p period is the longest time between two refreshes of this inverter as the
+  /// configuration has it, with what a gateway adds.
   bool overdue(TimePoint now, Duration period) const;
 
   // --- what has become of its reads -----------------------------------------------------------------------------------
@@ -54,7 +53,7 @@ public:
   /// Since the last complete status the drive has answered every read, and refuses for the moment (Modbus exceptions above 03:
   /// busy, locked, running).
   bool refusesForTheMoment() const;
-  /// Error id of the last read that failed since the last complete status; 0: none has.
+  /// Error id of the last exchange that failed since the last complete status; 0: none has.
   std::uint16_t lastError() const;
 
 private:
@@ -72,8 +71,6 @@ private:
   bool read_failed_ = false;
 
   TimePoint since_;
-  std::optional<TimePoint> turn_at_;
-  Duration turn_period_{ 0 };
 
   /// By length, since the last complete status.
   std::map<Duration, Reads> reads_;

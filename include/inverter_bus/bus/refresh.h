@@ -41,8 +41,6 @@ public:
   /// The read that is due; starts a new refresh when none is under way.
   const drive::ReadBlock& next(TimePoint now);
 
-  /// No refresh is under way: next() starts one.
-  bool begins() const;
   /// The drive has just refused a read of its run words that can't be had in another form; true once.
   bool takeRefusal();
 

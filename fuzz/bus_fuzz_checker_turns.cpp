@@ -39,8 +39,9 @@ bool Checker::waits(TimePoint now, std::size_t index) const
   // Commanded once more what is in force already: there is nothing to send.
   const bool in_force = lane.run_answered && lane.run_reverse == (lane.hertz < 0.0) && lane.held &&
                         std::fabs(*lane.held - std::fabs(lane.hertz)) < SET_POINT_STEP_HZ;
-  const bool commanded = lane.permit && !lane.settled && !in_force && lane.run_copies == 0 && lane.set_copies == 0 &&
-                         !lane.set_answered && lane.accepted_at < turn_began_;
+  // The dead man ends a command of which nothing was sent as well.
+  const bool commanded = lane.permit && lane.fed && !lane.settled && !in_force && lane.run_copies == 0 &&
+                         lane.set_copies == 0 && !lane.set_answered && lane.accepted_at < turn_began_;
   const double timeout = scene_.inverters[index].drive_timeout;
   const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&
                     now - *lane.last_heard > seconds(NEAR_SHARE * timeout);

@@ -186,6 +186,7 @@ void Checker::lost(TimePoint now)
 void Checker::heard(TimePoint now)
 {
   last_heard_at_ = now;
+  between_heard_at_ = in_flight_ ? between_heard_at_ : now;
   anything_heard_ = true;
 }
 
@@ -213,6 +214,7 @@ void Checker::sending(TimePoint now, const simulation::Bytes& frame)
   watchDeadMen(now);
   checkStopFirst(now);
   checkTurn(now);
+  checkBounded(now);
   checkMotion(now);
   checkBackground(now);
   was_probe_ = facts_.inverter && lanes_[*facts_.inverter].heard_of && !lanes_[*facts_.inverter].online;
@@ -289,6 +291,8 @@ void Checker::endExchange(TimePoint now)
     if (facts_.commands())
     {
       lane.settled = false;
+      // Words that a refresh repeats are no velocity's.
+      lane.lost_frames += facts_.stop || facts_.with_read ? 0 : 1;
       lane.held.reset();
     }
     lane.silences += facts_.expects_reply ? 1 : 0;
@@ -440,6 +444,7 @@ void Checker::notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, 
 {
   Lane& lane = lanes_[index];
   answered_ = true;
+  lane.lost_frames = facts_.commands() ? 0 : lane.lost_frames;
   lane.ends.push_back(now);
   if (lane.ends.size() > KEPT_ENDS)
   {

@@ -200,6 +200,9 @@ private:
     double most = 0.0;
     int sign = 0;
 
+    /// Frames of velocities in a row that were not answered.
+    int lost_frames = 0;
+
     // supervision
     std::optional<TimePoint> last_heard;
     bool timeout_known = false;
@@ -231,6 +234,7 @@ private:
   void notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal);
   void noteHeard(TimePoint end, std::size_t index);
   void checkTurn(TimePoint now);
+  void checkBounded(TimePoint now) const;
   bool waits(TimePoint now, std::size_t index) const;
   void checkBlindness(TimePoint now) const;
   void noteFailedRead();
@@ -300,6 +304,8 @@ private:
   bool answered_ = false;
   bool anything_heard_ = false;
   TimePoint last_heard_at_;
+  /// Between two exchanges.
+  TimePoint between_heard_at_;
   TimePoint disturbed_at_;
   std::deque<TimePoint> unanswered_;
   TimePoint last_due_served_;

@@ -43,6 +43,7 @@ void Checker::forbid(TimePoint now, Lane& lane)
   lane.permit_off_at = lane.permit ? now : lane.permit_off_at;
   lane.permit = false;
   lane.settled = false;
+  lane.lost_frames = 0;
   lane.fed.reset();
 }
 
@@ -202,7 +203,9 @@ void Checker::checkStopFirst(TimePoint now)
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     const Lane& lane = lanes_[index];
-    waiting = lane.due && *lane.due + quiet <= now && online(index) ? index : waiting;
+    // A late reply in the silence that such a drive wants before a request puts off what was decided before the stop came.
+    const bool decided = scene_.compoway && lane.due && between_heard_at_ > *lane.due - quiet;
+    waiting = lane.due && *lane.due + quiet <= now && !decided && online(index) ? index : waiting;
   }
   if (waiting == lanes_.size())
   {

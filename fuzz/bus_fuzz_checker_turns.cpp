@@ -69,6 +69,23 @@ void Checker::checkTurn(TimePoint now)
   turn_began_ = now;
 }
 
+/// A velocity is bounded whatever follows it: after 1 + retries lost frames of an inverter that may run a stop is next. The
+/// copies of one velocity are counted elsewhere; here newer ones may have come meanwhile.
+void Checker::checkBounded(TimePoint now) const
+{
+  if (!facts_.inverter || !facts_.commands() || facts_.stop || shutting_down_)
+  {
+    return;
+  }
+  const Lane& lane = lanes_[*facts_.inverter];
+  if ((lane.run_answered || lane.run_sent) && lane.lost_frames > scene_.retries)
+  {
+    fail(now, "a velocity is bounded whatever follows it",
+         nameOf(*facts_.inverter) + " is sent one more velocity after " + std::to_string(lane.lost_frames) +
+             " lost frames");
+  }
+}
+
 /// An inverter that has failed so often and shown no complete status since is published as offline, whatever else it
 /// answers. Who could not be asked, since the wire was taken by others, is not: nobody is offline because of them.
 void Checker::checkBlindness(TimePoint now) const

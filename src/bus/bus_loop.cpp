@@ -124,6 +124,8 @@ bool BusLoop::reopen()
     else if (coordinator_.renewalDue(now))
     {
       coordinator_.renewing(now);
+      // A moment, so that the other side sees it.
+      next_open_ = now + seconds(OPEN_PERIOD_S);
       abandon = true;
     }
     else if (!line_.mustReopen().empty())

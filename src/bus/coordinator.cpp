@@ -71,6 +71,7 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   settings.probe_share = PROBE_SHARE;
   scheduler_ = std::make_unique<Scheduler>(settings);
   last_published_.resize(inverters_.size());
+  attempts_at_open_.resize(inverters_.size(), 0);
   shutdown_tried_.resize(inverters_.size(), false);
   released_.resize(inverters_.size(), false);
 }
@@ -225,8 +226,7 @@ Pick Coordinator::pick(TimePoint now)
   }
   if (line_.telnetFound())
   {
-    allowed.stops_only = true;
-    return scheduler_->next(now, views(now), allowed);
+    return pickOverTelnet(now);
   }
   const auto check = pickCheck(now, allowed);
   return check ? *check : scheduler_->next(now, views(now), allowed);
@@ -404,7 +404,7 @@ Coordinator::Current Coordinator::composeRefresh(TimePoint now, const Pick& pick
     return current;
   }
   current.purpose = Purpose::Refresh;
-  const bool resync = inverter.loopback.usable() && inverter.drive.loopback(inverter.config.node, 0);
+  const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   if (inverter.refresh.begins())
   {
     inverter.liveness.turn(now);
@@ -490,7 +490,7 @@ std::optional<Coordinator::Current> Coordinator::composeVelocity(TimePoint now, 
     {
       if (write->starts && inverter.mustBeSeenRunning())
       {
-        scheduler_->splitOff(pick.command, member, next_command_++, now + seconds(STATUS_WAIT_S));
+        scheduler_->splitOff(pick.command, member, next_command_++, now + seconds(STATUS_WAIT_S), false);
         continue;
       }
       Current current;
@@ -591,7 +591,7 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
     return true;
   }
   const auto loopback =
-      inverter.loopback.usable() ? inverter.drive.loopback(inverter.config.node, ++loopback_number_) : std::nullopt;
+      inverter.loopbackUsable() ? inverter.drive.loopback(inverter.config.node, ++loopback_number_) : std::nullopt;
   if (loopback)
   {
     const Duration timeout = current.request.response_timeout;
@@ -609,7 +609,8 @@ bool Coordinator::makeSafe(TimePoint now, Current& current)
   if (current.purpose == Purpose::Velocity)
   {
     // The other members of a group don't wait for it.
-    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed);
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, allowed,
+                         inverter.movement.target() && inverter.movement.target()->zero);
   }
   else if (current.purpose == Purpose::Job)
   {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 #include <algorithm>
+#include <tuple>
 
 #include "inverter_bus/bus/coordinator.h"
 #include "inverter_bus/wire/shown_number.h"
@@ -16,7 +17,7 @@ namespace
 {
 // Contract, 8.9: one line a minute.
 constexpr double RESUMED_LOG_PERIOD_S = 60.0;
-// Failed attempts at a stop over a telnet connection before it is closed: a second one would wait for the probes' turn.
+// Failed attempts at a stop over a telnet connection before it is closed.
 constexpr unsigned TELNET_STOP_ATTEMPTS = 1;
 // How soon a write is looked at again that waits for the first valid reply of a connection.
 constexpr double UNPROVEN_PERIOD_S = 0.02;
@@ -71,6 +72,29 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   {
     gateway_.lost(reply.finished_at, reply.ticket);
   }
+  if (!isAnswered(reply))
+  {
+    othersFirst(gateway_.freeAt(reply.finished_at), *inverters_[current.inverter]);
+  }
+}
+
+/// Whoever has kept the gateway waits until everybody else was refreshed once, counted from when it is free again: else only
+/// one exchange would go between two blocks.
+void Coordinator::othersFirst(TimePoint free_at, Inverter& inverter)
+{
+  inverter.refresh_not_before = free_at + budget_.cycle;
+}
+
+/// Once: what it does differs from what its users expect.
+void Coordinator::tellOfTheGateway()
+{
+  if (gateway_.silentByNature() && !told_of_gateway_)
+  {
+    told_of_gateway_ = true;
+    log(Level::Warn, "port " + configuration_.bus.port +
+                         ": requests to a silent station are left unanswered: from now on " +
+                         wire::shownDuration(gateway_.wait()) + " is waited for instead of gateway_timeout");
+  }
 }
 
 /// Contract, 8.8: what follows a lost request would wait behind it, in the gateway.
@@ -81,6 +105,7 @@ Gate Coordinator::gate(TimePoint now)
   {
     scheduler_->chargeProbe(now, *kept);
   }
+  tellOfTheGateway();
   gate.stops_only = !gateway_.free(now);
   gate.until = gateway_.freeAt(now);
   gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {
@@ -332,14 +357,17 @@ std::optional<Pick> Coordinator::pickCheck(TimePoint now, Gate& gate)
 
 void Coordinator::noteLink(const wire::Reply& reply)
 {
-  if (isAnswered(reply) || reply.gateway_code != 0)
-  {
-    link_.answered();
-  }
-  else
+  if (!isAnswered(reply) && reply.gateway_code == 0)
   {
     link_.lost(reply.sent_at);
+    return;
   }
+  if (link_.wasSilent(reply.finished_at))
+  {
+    // What probes have cost meanwhile has delayed nobody.
+    scheduler_->restartProbes(reply.finished_at);
+  }
+  link_.answered();
 }
 
 bool Coordinator::renewalDue(TimePoint now) const
@@ -363,7 +391,9 @@ void Coordinator::renewing(TimePoint now)
   }
   // So long without an answer is no gap any more: whatever runs is to be stopped first when somebody answers again.
   loseEverybody(now, wire::ERROR_TIMEOUT);
-  reopening(now);
+  connection_.lost();
+  gateway_.connectionEnded(now);
+  renewing_ = true;
 }
 
 void Coordinator::reopening(TimePoint now)
@@ -372,7 +402,13 @@ void Coordinator::reopening(TimePoint now)
   gateway_.connectionEnded(now);
 }
 
-/// Only stops go over a telnet connection, and then it is closed. Whatever runs is stopped over it, as far as it carries.
+/// Its stop has had its attempts on this connection, in vain.
+bool Coordinator::triedOverTelnet(const Inverter& inverter) const
+{
+  return inverter.stop.attempts() >= attempts_at_open_[inverter.index] + TELNET_STOP_ATTEMPTS;
+}
+
+/// Only stops go over a telnet connection, those of offline inverters as well, and then it is closed.
 bool Coordinator::telnetOver(TimePoint now)
 {
   if (!line_.telnetFound())
@@ -384,9 +420,28 @@ bool Coordinator::telnetOver(TimePoint now)
     telnet_ = true;
     loseEverybody(now, wire::ERROR_PORT_LOST);
   }
-  return std::none_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {
-    return inverter->stop.pending() && inverter->stop.attempts() < TELNET_STOP_ATTEMPTS;
-  });
+  return std::none_of(inverters_.begin(), inverters_.end(),
+                      [this](const auto& inverter) { return inverter->stop.pending() && !triedOverTelnet(*inverter); });
+}
+
+Pick Coordinator::pickOverTelnet(TimePoint now) const
+{
+  const auto key = [](const Inverter& inverter) {
+    return std::make_tuple(inverter.silent(), inverter.stop.attempts(), inverter.stop.lastSentAt());
+  };
+  Pick pick;
+  pick.wake = now;
+  for (const auto& inverter : inverters_)
+  {
+    const bool due = inverter->stop.pending() && !triedOverTelnet(*inverter);
+    if (due && (pick.what == Pick::What::Nothing || key(*inverter) < key(*inverters_[pick.inverter])))
+    {
+      pick.what = Pick::What::Stop;
+      pick.inverter = inverter->index;
+      pick.probe = inverter->silent();
+    }
+  }
+  return pick;
 }
 
 void Coordinator::closedForTelnet(TimePoint now)

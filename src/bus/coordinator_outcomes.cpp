@@ -339,7 +339,8 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
   if (again && !cancelled)
   {
     // The other members of a group go on without it.
-    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now);
+    scheduler_->splitOff(current.pick.command, current.inverter, next_command_++, now,
+                         inverter.movement.target() && inverter.movement.target()->zero);
     finishExchange(current, reply, true);
     return;
   }
@@ -395,13 +396,18 @@ void Coordinator::failVelocity(const Current& current, const wire::Reply& reply,
 void Coordinator::writesLost(TimePoint now, Inverter& inverter)
 {
   const std::string text = inverter.lost_writes.text();
-  if (!inverter.lost_writes.raised())
+  const bool news = !inverter.lost_writes.raised();
+  if (news)
   {
     log(Level::Error, inverter.config.name + ": stopping and locking: " + text);
   }
   inverter.lost_writes.raise();
   inverter.velocityFailed(wire::ERROR_TIMEOUT, text);
   requestStop(now, inverter, StopMode::Decelerate, true, "");
+  if (news && inverter.known())
+  {
+    publish(now, inverter);
+  }
 }
 
 /// What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
@@ -708,6 +714,10 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
   link_.answered();
   const auto request = gateway_.answeredLate(now, late.ticket);
+  if (request)
+  {
+    othersFirst(now, *inverters_[request->inverter]);
+  }
   const bool alone = !gateway_.active() || (request && request->alone);
   if (request && request->alone && request->probe)
   {
@@ -760,7 +770,9 @@ void Coordinator::portOpened(TimePoint now)
   ever_opened_ = true;
   link_.opened(now);
   telnet_ = false;
-  const bool same = connection_.resuming();
+  last_unanswered_.reset();
+  const bool same = connection_.resuming() || renewing_;
+  renewing_ = false;
   // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
   scheduler_->restartCycle(now, !same && connection_.closedUnused() == 0);
   connection_.opened(now, onlineInverters());
@@ -774,6 +786,7 @@ void Coordinator::portOpened(TimePoint now)
   for (const auto& inverter : inverters_)
   {
     inverter->refresh_not_before = now;
+    attempts_at_open_[inverter->index] = inverter->stop.attempts();
     if (!inverter->known())
     {
       inverter->liveness.watchFrom(now);
@@ -856,7 +869,9 @@ void Coordinator::beginShutdown(TimePoint now)
 {
   shutting_down_ = true;
   const double two_exchanges_each = 2.0 * toSeconds(budget_.longest_exchange) * static_cast<double>(inverters_.size());
-  shutdown_deadline_ = now + seconds(std::min(10.0, std::max(2.0, two_exchanges_each)));
+  // Never over 10 s (contract, 4.4), the exchange that is under way then included.
+  const double longest = std::max(2.0, 9.9 - toSeconds(budget_.longest_exchange));
+  shutdown_deadline_ = now + seconds(std::min(longest, std::max(2.0, two_exchanges_each)));
   for (const auto& inverter : inverters_)
   {
     failJobs(inverter->index, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));

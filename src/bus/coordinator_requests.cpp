@@ -265,9 +265,9 @@ void Coordinator::applyVelocities(TimePoint now, const VelocityCommand& command,
     }
   }
   const bool queued = waiting.inverters.size() == 1 && scheduler_->velocityWaits(waiting.inverters.front());
-  if (queued && waiting.urgent)
+  if (queued)
   {
-    scheduler_->makeUrgent(waiting.inverters.front());
+    scheduler_->makeUrgent(waiting.inverters.front(), waiting.urgent);
   }
   if (!queued && !waiting.inverters.empty())
   {

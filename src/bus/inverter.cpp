@@ -25,6 +25,9 @@ constexpr double MOVEMENT_PATIENCE_S = 3.0;
 constexpr double DEVIATION_PATIENCE_S = 2.0;
 // A drive that was switched off and on is deaf for a second: within half of that it can't have lost our RUN unseen.
 constexpr double RUN_EVIDENCE_S = 0.5;
+// Loop-backs that may be left unanswered; contract, 8.8, for those over TCP.
+constexpr unsigned MOST_MISSED_LOOPBACKS = 3;
+constexpr unsigned MOST_MISSED_LOOPBACKS_TCP = 1;
 constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
@@ -79,6 +82,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , stop(drive, config.node)
   , refresh(drive, config.node)
   , settings(drive, config.node)
+  , loopback(config.modbus_tcp ? MOST_MISSED_LOOPBACKS_TCP : MOST_MISSED_LOOPBACKS)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
   , offline_after_(offline_after)
@@ -464,7 +468,13 @@ void Inverter::noteEepromWrite()
 bool Inverter::probesByLoopback() const
 {
   // Two ways to ask in turn, until it is known that the drive has the loop-back.
-  return loopback.proven() || (loopback.worthATry() && probes % 2 == 0);
+  const bool worth_it = config.modbus_tcp ? loopbackUsable() : loopback.worthATry();
+  return loopback.proven() || (worth_it && probes % 2 == 0);
+}
+
+bool Inverter::loopbackUsable() const
+{
+  return loopback.usable() && (ever_known_ || !config.ownPort());
 }
 
 wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const

@@ -40,6 +40,11 @@ void LinkWatch::lost(TimePoint sent_at)
   silent_since_ = silent_since_ ? silent_since_ : std::optional<TimePoint>(sent_at);
 }
 
+bool LinkWatch::wasSilent(TimePoint now) const
+{
+  return silent_since_ && now - *silent_since_ >= patience_;
+}
+
 bool LinkWatch::mute(TimePoint now) const
 {
   if (!silent_since_)

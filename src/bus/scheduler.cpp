@@ -96,7 +96,7 @@ void Scheduler::eraseVelocity(std::size_t inverter)
   }
 }
 
-void Scheduler::makeUrgent(std::size_t inverter)
+void Scheduler::makeUrgent(std::size_t inverter, bool urgent)
 {
   for (Ticket& ticket : tickets_)
   {
@@ -104,7 +104,8 @@ void Scheduler::makeUrgent(std::size_t inverter)
     if (ticket.command.kind == CommandKind::Velocity &&
         std::find(members.begin(), members.end(), inverter) != members.end())
     {
-      ticket.command.urgent = true;
+      // What is left of a group may have another 0 in it.
+      ticket.command.urgent = urgent || (members.size() > 1 && ticket.command.urgent);
     }
   }
 }
@@ -118,7 +119,7 @@ void Scheduler::postpone(CommandId id, TimePoint not_before)
   }
 }
 
-void Scheduler::splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before)
+void Scheduler::splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before, bool urgent)
 {
   const auto found = find(group);
   if (found == tickets_.end() || found->command.inverters.size() == 1)
@@ -132,6 +133,7 @@ void Scheduler::splitOff(CommandId group, std::size_t inverter, CommandId own, T
   alone.command.id = own;
   alone.command.inverters = { inverter };
   alone.command.not_before = not_before;
+  alone.command.urgent = urgent;
   tickets_.push_back(alone);
 }
 
@@ -873,9 +875,14 @@ void Scheduler::restartCycle(TimePoint now, bool probes_at_once)
   pause_until_ = now;
   if (probes_at_once)
   {
-    next_probe_ = now;
-    std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
+    restartProbes(now);
   }
+}
+
+void Scheduler::restartProbes(TimePoint now)
+{
+  next_probe_ = now;
+  std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -122,9 +122,17 @@ TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
   }
   EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
 }
+TEST(Loopback, OneMissIsEnoughOverTcp)
+{
+  LoopbackKnowledge over_tcp(1);
+  EXPECT_TRUE(over_tcp.usable());
+  over_tcp.note(wire::Outcome::Timeout);
+  EXPECT_FALSE(over_tcp.usable());
+}
+
 TEST(Loopback, ADriveThatAnswersNothingAtAllIsNotTakenForOneWithoutIt)
 {
-  LoopbackKnowledge loopback;
+  LoopbackKnowledge loopback(3);
   for (int tries = 0; tries < 10; ++tries)
   {
     loopback.note(wire::Outcome::Timeout);
@@ -134,7 +142,7 @@ TEST(Loopback, ADriveThatAnswersNothingAtAllIsNotTakenForOneWithoutIt)
 
 TEST(Loopback, ADriveThatIsSilentOnItAloneIsNotAskedAgainAndAgain)
 {
-  LoopbackKnowledge loopback;
+  LoopbackKnowledge loopback(3);
   for (int tries = 0; tries < 3; ++tries)
   {
     EXPECT_TRUE(loopback.usable());
@@ -148,7 +156,7 @@ TEST(Loopback, ADriveThatIsSilentOnItAloneIsNotAskedAgainAndAgain)
 
 TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
 {
-  LoopbackKnowledge worked;
+  LoopbackKnowledge worked(3);
   worked.note(wire::Outcome::Ok);
   for (int tries = 0; tries < 10; ++tries)
   {
@@ -156,7 +164,7 @@ TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
     worked.otherAnswered();
   }
   EXPECT_TRUE(worked.usable());
-  LoopbackKnowledge refused;
+  LoopbackKnowledge refused(3);
   refused.note(wire::Outcome::Exception);
   EXPECT_FALSE(refused.usable());
 }

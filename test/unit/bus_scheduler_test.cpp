@@ -545,8 +545,17 @@ TEST(Scheduler, waitingVelocityThatBecomesZeroGoesFirst)
   line.push(1, CommandKind::Velocity, { 0 });
   line.push(2, CommandKind::Velocity, { 1 });
   line.push(3, CommandKind::Velocity, { 2 });
-  line.scheduler.makeUrgent(2);
+  line.scheduler.makeUrgent(2, true);
   EXPECT_EQ(line.exchange(), "C3");
+}
+
+TEST(Scheduler, zeroThatBecomesAVelocityAgainIsNoMoreUrgent)
+{
+  VirtualLine line(3);
+  line.push(1, CommandKind::Velocity, { 0 });
+  line.pushZero(2, 2);
+  line.scheduler.makeUrgent(2, false);
+  EXPECT_EQ(line.exchange(), "C1");
 }
 
 TEST(Scheduler, postponedCommandWaitsForItsTimeAndHoldsNothingBack)
@@ -991,7 +1000,7 @@ TEST(Scheduler, memberThatIsSplitOffHoldsTheOthersOfItsGroupUpNoMore)
   ASSERT_EQ(line.exchange(), "C1");
   line.push(2, CommandKind::Velocity, { 1 }, 1);
   line.setFrames(9, 1);
-  line.scheduler.splitOff(1, 0, 9, at(500));
+  line.scheduler.splitOff(1, 0, 9, at(500), false);
   EXPECT_THAT(line.scheduler.members(1), ElementsAre(2U, 3U));
   EXPECT_THAT(line.scheduler.members(9), ElementsAre(0U));
   EXPECT_THAT(only('C', line.exchangesUntil(at(500))), ElementsAre("C1", "C1", "C1", "C1", "C2"));
@@ -1002,7 +1011,7 @@ TEST(Scheduler, onlyMemberOfAVelocityThatIsSplitOffKeepsItsNumber)
 {
   VirtualLine line(2);
   line.push(1, CommandKind::Velocity, { 0 });
-  line.scheduler.splitOff(1, 0, 9, at(50));
+  line.scheduler.splitOff(1, 0, 9, at(50), false);
   EXPECT_THAT(line.scheduler.members(1), ElementsAre(0U));
   EXPECT_THAT(line.scheduler.members(9), IsEmpty());
   EXPECT_THAT(only('C', line.exchangesUntil(at(50))), IsEmpty());

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 // A whole bus behind a Modbus TCP gateway, in virtual time (contract, 8.8 to 8.10, 8.16).
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -399,6 +400,49 @@ TEST_F(BehindAGateway, aRunThatWasUnderWayWhenItsConnectionWasLostIsStopped)
     bus_->run(10.0);
     EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0) << in_good_order;
   }
+}
+
+/// A converter that was put into telnet mode while a motor ran, and a drive that is back only later.
+TEST_F(BehindAGateway, pendingStopsGoOverEachTelnetConnection)
+{
+  start(
+      "port: rtu+tcp://virtual:4001\n"
+      "defaults: {drive: omron_mx2, command_timeout: 5.0, max_velocity: 60.0}\n"
+      "scan_list:\n"
+      "  - {name: a, node: 1}\n"
+      "  - {name: b, node: 2}\n");
+  bus_->telnet().negotiates = false;
+  turn(A, "a");
+  bus_->world("a offline");
+  bus_->world("bus unplug");
+  bus_->telnet().negotiates = true;
+  bus_->run(1.0);
+  bus_->world("bus plug");
+  bus_->run(15.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 1.0);
+  EXPECT_THAT(bus_->logTexts(), Contains(HasSubstr("set the port to raw")));
+  bus_->world("a online");
+  const std::size_t before = bus_->telnet().connections().size();
+  EXPECT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  bus_->run(20.0);
+  EXPECT_LE(bus_->telnet().connections().size() - before, 16U) << "one in 2 s";
+  EXPECT_FALSE(online(A));
+}
+
+TEST_F(BehindAGateway, thatItIsSilentByNatureIsSaidOnce)
+{
+  start();
+  bus_->gateway().behaviour.silent_code = 0;
+  bus_->gateway().behaviour.silence = 0.1;
+  turn(A, "a");
+  bus_->world("b offline");
+  bus_->run(120.0);
+  const auto lines = bus_->logTexts();
+  EXPECT_EQ(
+      std::count_if(lines.begin(), lines.end(),
+                    [](const std::string& line) { return line.find("are left unanswered") != std::string::npos; }),
+      1);
+  EXPECT_TRUE(online(A));
 }
 
 TEST_F(BehindAGateway, shutdownSleepsWhileAStopWaitsInTheGateway)

@@ -22,6 +22,7 @@
 #include "inverter_bus/bus/coordinator.h"
 #include "inverter_bus/simulation/simulated_bus.h"
 #include "virtual_gateway.h"
+#include "virtual_telnet.h"
 #include "virtual_world.h"
 
 namespace inverter_bus
@@ -330,6 +331,12 @@ public:
     return dynamic_cast<VirtualGateway&>(*port_);
   }
 
+  /// Where it is rtu+tcp://.
+  VirtualTelnet& telnet()
+  {
+    return dynamic_cast<VirtualTelnet&>(*port_);
+  }
+
   const std::vector<bus::BusStatus>& busStatuses() const
   {
     return bus_statuses_;
@@ -359,9 +366,13 @@ private:
 
   std::unique_ptr<wire::Port> makePort()
   {
-    if (!configuration_.bus.modbus_tcp)
+    if (!configuration_.bus.gateway)
     {
       return std::make_unique<VirtualPort>(simulated_, clock_);
+    }
+    if (!configuration_.bus.modbus_tcp)
+    {
+      return std::make_unique<VirtualTelnet>(simulated_, clock_);
     }
     const double gap = 3.5 * wire::bitsPerCharacter(configuration_.bus.serial) / configuration_.bus.serial.baud_rate;
     return std::make_unique<VirtualGateway>(simulated_, clock_, gap);

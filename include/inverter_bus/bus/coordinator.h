@@ -214,7 +214,9 @@ private:
   void noteGateway(const Current& current, const wire::Reply& reply);
   void noteConnection(TimePoint now, const Current& current, const wire::Reply& reply);
   void noteLink(const wire::Reply& reply);
+  void othersFirst(TimePoint free_at, Inverter& inverter);
   Gate gate(TimePoint now);
+  void tellOfTheGateway();
   Duration probePrice(const Current& current, const wire::Reply& reply) const;
   TimePoint stopNotBefore(TimePoint now, const Inverter& inverter) const;
   void stopInsteadOfZeros(TimePoint now);
@@ -230,6 +232,8 @@ private:
   Pick pick(TimePoint now);
   bool untested(const Inverter& inverter) const;
   bool mustWait(TimePoint now, const Current& current);
+  Pick pickOverTelnet(TimePoint now) const;
+  bool triedOverTelnet(const Inverter& inverter) const;
 
   // loop
   void watchDeadMen(TimePoint now);
@@ -302,8 +306,13 @@ private:
   bool behind_another_ = false;
   /// To whom the last request went, if it was not answered.
   std::optional<std::size_t> last_unanswered_;
+  /// The link is being opened anew because it was mute.
+  bool renewing_ = false;
   /// The connection leads to a telnet server, and everybody was given up because of it.
   bool telnet_ = false;
+  bool told_of_gateway_ = false;
+  /// Attempts at each pending stop when the connection was opened.
+  std::vector<unsigned> attempts_at_open_;
   std::size_t resumed_ = 0;
   std::optional<TimePoint> resumed_logged_at_;
 

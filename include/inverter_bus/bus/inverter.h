@@ -42,6 +42,11 @@ struct Judgement
 class LoopbackKnowledge
 {
 public:
+  /// \p most_misses so often it may be left unanswered: one that got lost on a line says little, a server's silence much.
+  explicit LoopbackKnowledge(unsigned most_misses) : most_misses_(most_misses)
+  {
+  }
+
   void note(wire::Outcome outcome)
   {
     works_ = works_ || outcome == wire::Outcome::Ok;
@@ -62,7 +67,7 @@ public:
   /// Worth sending where its answer is needed.
   bool usable() const
   {
-    return works_ || !(refused_ || misses_ >= MOST_MISSES);
+    return works_ || !(refused_ || misses_ >= most_misses_);
   }
   /// Worth sending where its answer would be good news.
   bool worthATry() const
@@ -75,7 +80,7 @@ public:
   }
 
 private:
-  static constexpr unsigned MOST_MISSES = 3;
+  unsigned most_misses_;
   bool works_ = false;
   bool refused_ = false;
   unsigned misses_ = 0;
@@ -169,6 +174,9 @@ public:
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.
   void noteEepromWrite();
+  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
+  /// (contract, 8.8).
+  bool loopbackUsable() const;
   /// The next probe() is a loop-back, if the drive's profile has one.
   bool probesByLoopback() const;
   /// The question that shows whether an offline drive is back.

@@ -26,6 +26,8 @@ public:
   /// A request that left at \p sent_at was not answered.
   void lost(TimePoint sent_at);
 
+  /// Nobody has answered for so long that it is the link, not a station, that is silent.
+  bool wasSilent(TimePoint now) const;
   /// Time to open the link anew.
   bool mute(TimePoint now) const;
   /// It is about to be opened anew because of it. Returns true if that is to be said: the first time in a row.

@@ -140,11 +140,13 @@ public:
   /// Takes a command out, or one inverter out of a grouped velocity.
   void erase(CommandId id);
   void eraseVelocity(std::size_t inverter);
-  void makeUrgent(std::size_t inverter);
+  /// The velocity that waits for an inverter has become a 0, or is none any more.
+  void makeUrgent(std::size_t inverter, bool urgent);
   void postpone(CommandId id, TimePoint not_before);
   /// One member of a grouped velocity that has to wait or to be repeated goes its own way as \p own, in the group's place
-  /// and not before \p not_before; the others go on without it. A velocity of one inverter is only postponed.
-  void splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before);
+  /// and not before \p not_before; the others go on without it. A velocity of one inverter is only postponed. \p urgent: it
+  /// is a 0.
+  void splitOff(CommandId group, std::size_t inverter, CommandId own, TimePoint not_before, bool urgent);
   bool velocityWaits(std::size_t inverter) const;
   /// Inverters that a waiting velocity still has to serve, in node order; empty: no such command.
   std::vector<std::size_t> members(CommandId id) const;
@@ -175,6 +177,8 @@ public:
   std::uint64_t exchanges() const;
   /// The whole bus starts afresh (port opened again). \p probes_at_once: what probes have cost before doesn't count.
   void restartCycle(TimePoint now, bool probes_at_once = true);
+  /// What probes have cost before doesn't count.
+  void restartProbes(TimePoint now);
 
 private:
   struct Ticket

@@ -23,6 +23,7 @@ constexpr double SET_POINT_STEP_HZ = 0.051;
 // Three refresh periods as the losses themselves stretch them, the one before and the one that is under way.
 constexpr unsigned FAILED_TURNS = 5;
 constexpr int PERIODS = 3;
+constexpr double BAR_S = 1.0;
 // A VF-S15 starts anew; no profile says more.
 constexpr double DEAF_AFTER_RESET_S = 3.0;
 }  // namespace
@@ -96,8 +97,10 @@ void Checker::checkBlindness(TimePoint now) const
     const Duration blind = now - std::max(lane.status.stamp, lane.deaf_until);
     const bool watched = connected_ && !shutting_down_ && lane.online && !lane.stopping &&
                          lane.failed_reads >= FAILED_TURNS * (1 + scene_.retries);
-    const Duration patience =
-        std::max(seconds(scene_.longestBlindness()), PERIODS * std::max(lane.pause, lane.pause_before));
+    // What was lost bars its like for a second, and so stretches its own turn.
+    const Duration own = seconds(BAR_S) + (1 + scene_.retries) * scene_.longestExchange();
+    const Duration period = std::max({ lane.pause, lane.pause_before, own });
+    const Duration patience = std::max(seconds(scene_.longestBlindness()), PERIODS * period);
     if (watched && blind > patience + babble(now))
     {
       fail(now, "alive means data",

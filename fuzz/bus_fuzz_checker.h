@@ -164,6 +164,7 @@ private:
     std::optional<TimePoint> power_lost;
     TimePoint cut_at;             ///< of the supply, the last time
     bool latched_at_cut = false;  ///< RUN, just before
+    TimePoint imitated_at;        ///< another drive has answered under its station
     TimePoint reply_end;          ///< on the line, of its last reply
 
     // stops
@@ -227,6 +228,7 @@ private:
   void checkGap(TimePoint now);
   void checkPatience(TimePoint now);
   void endExchange(TimePoint now);
+  void noteImitation(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
   void takeReply(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
   ReplyKind readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply, unsigned& refusal) const;
   void notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal);

@@ -23,6 +23,7 @@ constexpr double SET_POINT_STEP_HZ = 0.051;
 // Three refresh periods as the losses themselves stretch them, the one before and the one that is under way.
 constexpr unsigned FAILED_TURNS = 5;
 constexpr int PERIODS = 3;
+constexpr double BAR_S = 1.0;
 // A VF-S15 starts anew; no profile says more.
 constexpr double DEAF_AFTER_RESET_S = 3.0;
 }  // namespace
@@ -39,8 +40,9 @@ bool Checker::waits(TimePoint now, std::size_t index) const
   // Commanded once more what is in force already: there is nothing to send.
   const bool in_force = lane.run_answered && lane.run_reverse == (lane.hertz < 0.0) && lane.held &&
                         std::fabs(*lane.held - std::fabs(lane.hertz)) < SET_POINT_STEP_HZ;
-  const bool commanded = lane.permit && !lane.settled && !in_force && lane.run_copies == 0 && lane.set_copies == 0 &&
-                         !lane.set_answered && lane.accepted_at < turn_began_;
+  // The dead man ends a command of which nothing was sent as well.
+  const bool commanded = lane.permit && lane.fed && !lane.settled && !in_force && lane.run_copies == 0 &&
+                         lane.set_copies == 0 && !lane.set_answered && lane.accepted_at < turn_began_;
   const double timeout = scene_.inverters[index].drive_timeout;
   const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&
                     now - *lane.last_heard > seconds(NEAR_SHARE * timeout);
@@ -95,8 +97,10 @@ void Checker::checkBlindness(TimePoint now) const
     const Duration blind = now - std::max(lane.status.stamp, lane.deaf_until);
     const bool watched = connected_ && !shutting_down_ && lane.online && !lane.stopping &&
                          lane.failed_reads >= FAILED_TURNS * (1 + scene_.retries);
-    const Duration patience =
-        std::max(seconds(scene_.longestBlindness()), PERIODS * std::max(lane.pause, lane.pause_before));
+    // What was lost bars its like for a second, and so stretches its own turn.
+    const Duration own = seconds(BAR_S) + (1 + scene_.retries) * scene_.longestExchange();
+    const Duration period = std::max({ lane.pause, lane.pause_before, own });
+    const Duration patience = std::max(seconds(scene_.longestBlindness()), PERIODS * period);
     if (watched && blind > patience + babble(now))
     {
       fail(now, "alive means data",

@@ -164,6 +164,7 @@ private:
     std::optional<TimePoint> power_lost;
     TimePoint cut_at;             ///< of the supply, the last time
     bool latched_at_cut = false;  ///< RUN, just before
+    TimePoint imitated_at;        ///< another drive has answered under its station
     TimePoint reply_end;          ///< on the line, of its last reply
 
     // stops
@@ -181,6 +182,12 @@ private:
 
     // status
     unsigned statuses_tripped = 0;  ///< complete ones, with other stamps, since the drive has tripped
+    unsigned failed_reads = 0;      ///< of its status, since the last complete one
+    TimePoint asked_at;             ///< the last of these reads
+    /// The longest time without one since the last complete status, and before that.
+    Duration pause{ 0 };
+    Duration pause_before{ 0 };
+    TimePoint deaf_until;  ///< after a reset
     bool heard_of = false;
     bool online = false;
     TimePoint online_since;
@@ -195,7 +202,6 @@ private:
 
     /// Frames of velocities in a row that were not answered.
     int lost_frames = 0;
-    TimePoint reset_at;
 
     // supervision
     std::optional<TimePoint> last_heard;
@@ -222,6 +228,7 @@ private:
   void checkGap(TimePoint now);
   void checkPatience(TimePoint now);
   void endExchange(TimePoint now);
+  void noteImitation(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
   void takeReply(TimePoint now, const simulation::FrameRecord& frame, std::size_t index);
   ReplyKind readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply, unsigned& refusal) const;
   void notePromptReply(TimePoint now, std::size_t index, ReplyKind kind, unsigned refusal);
@@ -230,6 +237,7 @@ private:
   void checkBounded(TimePoint now) const;
   bool waits(TimePoint now, std::size_t index) const;
   void checkBlindness(TimePoint now) const;
+  void noteFailedRead();
   void checkWentOffline(TimePoint now, std::size_t index) const;
   void payProbe(TimePoint now, Duration cost);
   void checkBackground(TimePoint now);

@@ -298,7 +298,6 @@ void Checker::checkMotion(TimePoint now)
   }
   const std::size_t index = *facts_.inverter;
   Lane& lane = lanes_[index];
-  lane.reset_at = facts_.reset ? now : lane.reset_at;
   if (facts_.reset && runLatched(index))
   {
     fail(now, "reset sends nothing unless RUN is off", nameOf(index) + " is reset with RUN on");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -17,10 +18,14 @@ namespace
 constexpr double BARRED_S = 3.0;
 // Of a drive's own time-out: before it has passed, the drive is not late yet, but it has the next turn.
 constexpr double NEAR_SHARE = 0.95;
-// A VF-S15 is given 3 s to start anew after a reset (E6581913), with the exchange under way and its repeats.
-constexpr double DEAF_AFTER_RESET_S = 4.0;
 // Coarser than the rounding of every brand.
 constexpr double SET_POINT_STEP_HZ = 0.051;
+// Three refresh periods as the losses themselves stretch them, the one before and the one that is under way.
+constexpr unsigned FAILED_TURNS = 5;
+constexpr int PERIODS = 3;
+constexpr double BAR_S = 1.0;
+// A VF-S15 starts anew; no profile says more.
+constexpr double DEAF_AFTER_RESET_S = 3.0;
 }  // namespace
 
 /// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent; or its
@@ -35,8 +40,9 @@ bool Checker::waits(TimePoint now, std::size_t index) const
   // Commanded once more what is in force already: there is nothing to send.
   const bool in_force = lane.run_answered && lane.run_reverse == (lane.hertz < 0.0) && lane.held &&
                         std::fabs(*lane.held - std::fabs(lane.hertz)) < SET_POINT_STEP_HZ;
-  const bool commanded = lane.permit && !lane.settled && !in_force && lane.run_copies == 0 && lane.set_copies == 0 &&
-                         !lane.set_answered && lane.accepted_at < turn_began_;
+  // The dead man ends a command of which nothing was sent as well.
+  const bool commanded = lane.permit && lane.fed && !lane.settled && !in_force && lane.run_copies == 0 &&
+                         lane.set_copies == 0 && !lane.set_answered && lane.accepted_at < turn_began_;
   const double timeout = scene_.inverters[index].drive_timeout;
   const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&
                     now - *lane.last_heard > seconds(NEAR_SHARE * timeout);
@@ -81,21 +87,43 @@ void Checker::checkBounded(TimePoint now) const
   }
 }
 
-/// An inverter that has shown no complete status for so long is published as offline, whatever else it answers.
+/// An inverter that has failed so often and shown no complete status since is published as offline, whatever else it
+/// answers. Who could not be asked, since the wire was taken by others, is not: nobody is offline because of them.
 void Checker::checkBlindness(TimePoint now) const
 {
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     const Lane& lane = lanes_[index];
-    const Duration blind = now - lane.status.stamp;
-    const bool deaf = lane.reset_at != TimePoint() && now - lane.reset_at < seconds(DEAF_AFTER_RESET_S);
-    if (connected_ && !shutting_down_ && lane.online && !deaf &&
-        blind > seconds(scene_.longestBlindness()) + babble(now))
+    const Duration blind = now - std::max(lane.status.stamp, lane.deaf_until);
+    const bool watched = connected_ && !shutting_down_ && lane.online && !lane.stopping &&
+                         lane.failed_reads >= FAILED_TURNS * (1 + scene_.retries);
+    // What was lost bars its like for a second, and so stretches its own turn.
+    const Duration own = seconds(BAR_S) + (1 + scene_.retries) * scene_.longestExchange();
+    const Duration period = std::max({ lane.pause, lane.pause_before, own });
+    const Duration patience = std::max(seconds(scene_.longestBlindness()), PERIODS * period);
+    if (watched && blind > patience + babble(now))
     {
       fail(now, "alive means data",
            nameOf(index) + " is shown as online, its last complete status is " + std::to_string(toSeconds(blind)) +
                " s old");
     }
+  }
+}
+
+void Checker::noteFailedRead()
+{
+  Lane& lane = lanes_[*facts_.inverter];
+  const bool failed = !answered_ || lane.exception_at >= sent_at_;
+  lane.failed_reads += facts_.reads && !facts_.reads_parameter && failed ? 1 : 0;
+  if (facts_.reset)
+  {
+    lane.deaf_until = now_() + seconds(DEAF_AFTER_RESET_S);
+  }
+  // Each refresh has one of these, and nothing else has.
+  if (facts_.reads_frequency)
+  {
+    lane.pause = lane.asked_at == TimePoint() ? lane.pause : std::max(lane.pause, sent_at_ - lane.asked_at);
+    lane.asked_at = sent_at_;
   }
 }
 

@@ -286,6 +286,11 @@ ReplyKind readCompowayReply(const Bytes& request, const Bytes& reply, unsigned& 
 }
 }  // namespace
 
+std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station)
+{
+  return find(scene, station);
+}
+
 RequestFacts readRequest(const Scene& scene, const Bytes& frame)
 {
   return scene.compoway ? readCompoway(scene, frame) : readModbus(scene, frame);

@@ -44,6 +44,9 @@ struct RequestFacts
   }
 };
 
+/// Whose station this is.
+std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station);
+
 RequestFacts readRequest(const Scene& scene, const simulation::Bytes& frame);
 
 enum class ReplyKind

@@ -72,7 +72,8 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   {
     gateway_.lost(reply.finished_at, reply.ticket);
   }
-  if (!isAnswered(reply))
+  const bool read = current.purpose == Purpose::Refresh || current.purpose == Purpose::Setting;
+  if (!isAnswered(reply) && read)
   {
     othersFirst(gateway_.freeAt(reply.finished_at), *inverters_[current.inverter]);
   }
@@ -82,7 +83,12 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
 /// one exchange would go between two blocks.
 void Coordinator::othersFirst(TimePoint free_at, Inverter& inverter)
 {
-  inverter.refresh_not_before = free_at + budget_.cycle;
+  // Not where its own time-out would pass meanwhile.
+  const auto serve_by = inverter.serveBy(budget_.deadline_margin);
+  if (!serve_by || *serve_by > free_at + budget_.cycle)
+  {
+    inverter.refresh_not_before = free_at + budget_.cycle;
+  }
 }
 
 /// Once: what it does differs from what its users expect.

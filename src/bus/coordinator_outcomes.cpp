@@ -725,7 +725,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
   link_.answered();
   const auto request = gateway_.answeredLate(now, late.ticket);
-  if (request)
+  if (request && request->risk == GatewayRisk::None)
   {
     othersFirst(now, *inverters_[request->inverter]);
   }
@@ -824,12 +824,15 @@ void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_u
   {
     return;
   }
+  const bool news = connected_ || !port_complained_;
   connected_ = false;
+  renewing_ = false;
   last_error_ = wire::ERROR_PORT_LOST;
   port_failing_ = false;
   port_error_ = error;
-  if (!port_complained_)
+  if (news)
   {
+    // Also when it was told of before: what was there over a connection since is gone now.
     port_complained_ = true;
     log(in_use ? Level::Warn : Level::Error,
         error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT);
@@ -882,7 +885,14 @@ void Coordinator::beginShutdown(TimePoint now)
   const double two_exchanges_each = 2.0 * toSeconds(budget_.longest_exchange) * static_cast<double>(inverters_.size());
   // Never over 10 s (contract, 4.4), the exchange that is under way then included.
   const double longest = std::max(2.0, 9.9 - toSeconds(budget_.longest_exchange));
-  shutdown_deadline_ = now + seconds(std::min(longest, std::max(2.0, two_exchanges_each)));
+  double needed = std::max(2.0, two_exchanges_each);
+  for (const auto& inverter : inverters_)
+  {
+    // A stop that an old RUN in a gateway could follow counts only after it (contract, 8.8).
+    const auto danger = gateway_.motionUntil(now, inverter->index);
+    needed = danger ? std::max(needed, toSeconds(*danger - now) + two_exchanges_each) : needed;
+  }
+  shutdown_deadline_ = now + seconds(std::min(longest, needed));
   for (const auto& inverter : inverters_)
   {
     failJobs(inverter->index, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));

@@ -201,6 +201,12 @@ bool DriveSettings::pending() const
   return urgent() || unread() != nullptr;
 }
 
+bool DriveSettings::nextWrites() const
+{
+  const Setting* setting = unread();
+  return leave_setup_ || (!modelDue() && connectDue() && (setting == nullptr || !setting->urgent));
+}
+
 wire::Request DriveSettings::next() const
 {
   if (leave_setup_)

@@ -28,6 +28,8 @@ constexpr double RUN_EVIDENCE_S = 0.5;
 // Loop-backs that may be left unanswered; contract, 8.8, for those over TCP.
 constexpr unsigned MOST_MISSED_LOOPBACKS = 3;
 constexpr unsigned MOST_MISSED_LOOPBACKS_TCP = 1;
+// A drive that has answered so lately is there.
+constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
@@ -278,7 +280,9 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 bool Inverter::connectDue(TimePoint now) const
 {
-  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent();
+  // Nothing but reads goes to a port of the drive's own before it has told its status (contract, 8.8).
+  const bool must_wait = config.ownPort() && !ever_known_ && settings.nextWrites();
+  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent() && !must_wait;
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)
@@ -709,6 +713,7 @@ InverterStatus Inverter::status(TimePoint now) const
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
   status.communication_error = offline_;
+  status.refuses = offline_ && liveness.refusesForTheMoment() && now - last_reply_ < seconds(LATELY_S);
   if (!status.communication_error)
   {
     status.monitor = refresh.monitor(now);

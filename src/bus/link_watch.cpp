@@ -32,17 +32,19 @@ void LinkWatch::answered()
 {
   ever_answered_ = true;
   silent_since_.reset();
+  unanswered_since_.reset();
   period_ = Duration::zero();
 }
 
 void LinkWatch::lost(TimePoint sent_at)
 {
   silent_since_ = silent_since_ ? silent_since_ : std::optional<TimePoint>(sent_at);
+  unanswered_since_ = unanswered_since_ ? unanswered_since_ : std::optional<TimePoint>(sent_at);
 }
 
 bool LinkWatch::wasSilent(TimePoint now) const
 {
-  return silent_since_ && now - *silent_since_ >= patience_;
+  return unanswered_since_ && now - *unanswered_since_ >= patience_;
 }
 
 bool LinkWatch::mute(TimePoint now) const

@@ -111,6 +111,15 @@ void Liveness::noteRead(Duration length, const wire::Reply& reply)
   last_error_ = reply.error_id;
 }
 
+bool Liveness::refusesForTheMoment() const
+{
+  constexpr std::uint16_t FIRST_MODBUS_EXCEPTION = 0x8000;
+  constexpr unsigned LAST_LASTING_EXCEPTION = 0x03;
+  const Reads all = since(Duration{ 0 });
+  const bool refused = all.refused > 0 && all.lost == 0 && all.damaged == 0;
+  return refused && refusal_ >= FIRST_MODBUS_EXCEPTION && (refusal_ & 0xFFU) > LAST_LASTING_EXCEPTION;
+}
+
 /// Of all reads that are at least so long.
 Liveness::Reads Liveness::since(Duration length) const
 {

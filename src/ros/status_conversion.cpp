@@ -117,7 +117,7 @@ InverterStatus emptyMessage()
 void putOwn(const bus::InverterStatus& status, InverterStatus& message)
 {
   message.run_command = status.run_command;
-  message.communication_error = status.communication_error;
+  message.communication_error = status.communication_error && !status.refuses;
   message.move_velocity_active = status.move_velocity_active;
   message.reset_active = status.reset_active;
   message.stop_active = status.stop_active;

@@ -198,6 +198,35 @@ TEST_F(Mx2BehindAGateway, whatItsProfileListsIsItsOwnAndAllElseTheGateways)
   }
 }
 
+/// Frames at connect of a VF-S15 whose parameters are all 0.
+std::string connectFunctions(const InverterConfig& config)
+{
+  const drive::Drive drive = shipped("toshiba_vfs15");
+  Inverter inverter(0, config, drive, 3, 1);
+  std::string functions;
+  for (int frame = 0; frame < 50 && inverter.connectDue(at(1)); ++frame)
+  {
+    const wire::Request request = inverter.settings.next();
+    functions += std::to_string(request.pdu[0]) + " ";
+    wire::Reply reply;
+    reply.outcome = wire::Outcome::Ok;
+    const std::uint8_t identity = request.pdu[1] == 0xFB && request.pdu[2] == 0x07 ? 224 : 0;
+    reply.pdu = request.pdu[0] == 3 ? wire::Bytes{ 3, 2, 0, identity } : request.pdu;
+    reply.finished_at = at(0);
+    inverter.settings.done(reply);
+  }
+  return functions;
+}
+
+TEST(AnOwnPort, isNotWrittenToBeforeItsFirstStatus)
+{
+  InverterConfig config = inverterConfig();
+  EXPECT_THAT(connectFunctions(config), testing::HasSubstr("6 ")) << "on a serial line the driver sets its marker";
+  config.modbus_tcp = true;
+  config.node = 255;
+  EXPECT_THAT(connectFunctions(config), testing::Not(testing::HasSubstr("6 ")));
+}
+
 TEST(Mx2OnAWire, isAskedNothingOfTheKind)
 {
   const InverterConfig config = inverterConfig();

@@ -60,6 +60,19 @@ TEST_F(ALinkWatch, nobodyIsMuteWhoWasNotAsked)
   EXPECT_FALSE(watch_.mute(at(2000.0)));
 }
 
+TEST_F(ALinkWatch, knowsThatItWasTheLinkThatWasSilentHoweverOftenItWasOpenedAnew)
+{
+  watch_.opened(at(0.0));
+  watch_.answered();
+  watch_.lost(at(1.0));
+  EXPECT_FALSE(watch_.wasSilent(at(5.9)));
+  EXPECT_TRUE(watch_.wasSilent(at(6.0)));
+  watch_.opened(at(6.0));
+  EXPECT_TRUE(watch_.wasSilent(at(6.1)));
+  watch_.answered();
+  EXPECT_FALSE(watch_.wasSilent(at(6.2)));
+}
+
 TEST_F(ALinkWatch, anAnswerEndsIt)
 {
   watch_.opened(at(0.0));

@@ -310,6 +310,32 @@ TEST_P(HalfAlive, isToldAtStartUpToo)
   EXPECT_TRUE(bus.runUntil(4.0, [&] { return !bus.status(BAD).communication_error; }));
 }
 
+TEST(ADriveThatRefuses, isOfflineThoughTheCommunicationWorks)
+{
+  VirtualBus bus(TWO_BELTS);
+  bus.settleIn(10.0);
+  bus.world("bad exception 33 count 0");
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.status(BAD).communication_error; }));
+  bus.run(2.0);
+  EXPECT_TRUE(bus.status(BAD).refuses) << "for the moment: 21H";
+  EXPECT_FALSE(bus.status(BAD).monitor.output_frequency) << "but nothing is shown of it";
+  EXPECT_EQ(bus.command(BAD, 10.0), bus::ERROR_OFFLINE);
+  bus.world("bad clear");
+  bus.world("bad lost_request count 0");
+  EXPECT_TRUE(bus.runUntil(5.0, [&] { return !bus.status(BAD).refuses; })) << "now it is silent";
+  EXPECT_TRUE(bus.status(BAD).communication_error);
+}
+
+TEST(ADriveThatRefuses, forGoodIsNoSuchDrive)
+{
+  VirtualBus bus(TWO_BELTS);
+  bus.settleIn(10.0);
+  bus.world("bad exception 2 count 0");
+  ASSERT_TRUE(bus.runUntil(4.0, [&] { return bus.status(BAD).communication_error; }));
+  bus.run(2.0);
+  EXPECT_FALSE(bus.status(BAD).refuses);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Kinds, HalfAlive,
     testing::Values(

@@ -322,6 +322,27 @@ TEST_F(BehindAGateway, aMuteConnectionIsOpenedAnew)
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0) << "nothing runs again by itself";
 }
 
+/// A mute link whose host is away when it is opened anew, and which is lost for good later.
+TEST_F(BehindAGateway, aLossAfterARenewalThatFailedIsALoss)
+{
+  start();
+  bus_->settleIn(20.0);
+  bus_->gateway().behaviour.mute = true;
+  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().abandoned() > 0; }));
+  bus_->gateway().behaviour.gone = true;
+  bus_->run(3.0);
+  EXPECT_FALSE(bus_->busStatuses().back().connected);
+  bus_->gateway().behaviour = VirtualGateway::Behaviour();
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return online(A) && online(B); }));
+  EXPECT_THAT(bus_->logTexts().back(), Not(HasSubstr("cannot connect")));
+  bus_->run(5.0);
+  bus_->gateway().behaviour.gone = true;
+  bus_->gateway().hangUp();
+  EXPECT_TRUE(bus_->runUntil(3.0, [&] { return !online(A) && !online(B); })) << "an old value shown as fresh";
+  bus_->run(0.1);
+  EXPECT_FALSE(bus_->busStatuses().back().connected);
+}
+
 TEST_F(BehindAGateway, aLateRunIsFollowedByAStopThatCounts)
 {
   start();
@@ -429,6 +450,26 @@ TEST_F(BehindAGateway, pendingStopsGoOverEachTelnetConnection)
   EXPECT_FALSE(online(A));
 }
 
+TEST_F(BehindAGateway, shutdownOutlastsARunThatIsUnderWay)
+{
+  start();
+  bus_->settleIn(20.0);
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+  bus_->gateway().behaviour.hold_time = 2.7;
+  bus_->gateway().behaviour.hold_aside = true;
+  bus_->command(A, 20.0);
+  onHold([this] { bus_->gateway().hangUp(); });
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->gateway().closed() > 0; }));
+  bus_->run(0.1);
+  bus_->coordinator().beginShutdown(bus_->now());
+  const TimePoint begun = bus_->now();
+  EXPECT_TRUE(bus_->runUntil(20.0, [&] { return bus_->coordinator().shutdownDone(bus_->now()); }));
+  EXPECT_LE(toSeconds(bus_->now() - begun), 10.0);
+  EXPECT_EQ(bus_->coordinator().endShutdown().size(), 0U);
+  bus_->pass(5.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
 TEST_F(BehindAGateway, thatItIsSilentByNatureIsSaidOnce)
 {
   start();
@@ -486,11 +527,13 @@ TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)
 {
   start();
   turn(A, "a");
-  // The gateway is busy with a read when the stop comes.
-  bus_->gateway().behaviour.hold = { 0x02, 0x01 };
-  bus_->gateway().behaviour.hold_time = 1.0;
-  onHold([this] { bus_->stop(A); });
-  bus_->run(4.0);
+  bus_->gateway().behaviour.silence = 1.0;
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(30.0, [&] { return bus_->gateway().blocked() > 0.0; }));
+  bus_->run(0.1);
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return bus_->gateway().busy(); })) << "it waits for b";
+  bus_->wait(bus_->stop(A));
+  bus_->run(2.0);
   EXPECT_GT(bus_->busStatuses().back().stop_latency_max, 0.3);
 }
 

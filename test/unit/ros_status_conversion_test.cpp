@@ -165,6 +165,18 @@ TEST_F(StatusConversionTest, whatAnOfflineDriveSaidLastIsNoStatus)
   EXPECT_EQ(ros::Time(4997, 500000000), message.header.stamp);
 }
 
+TEST_F(StatusConversionTest, aDriveThatRefusesForTheMomentIsNoCommunicationErrorAndTellsNothing)
+{
+  run(1, 20.0);
+  status_.communication_error = true;
+  status_.refuses = true;
+  const InverterStatus message = convert();
+  EXPECT_FALSE(message.communication_error);
+  EXPECT_EQ(0U, message.known);
+  EXPECT_FALSE(message.running);
+  EXPECT_TRUE(std::isnan(message.velocity));
+}
+
 TEST_F(StatusConversionTest, theStampIsTheArrivalInRosTime)
 {
   status_.stamp = moment_.steady - milliseconds(20);

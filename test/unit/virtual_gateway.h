@@ -93,6 +93,11 @@ public:
   {
     return deepest_;
   }
+  /// A request of which we have given up waiting is on the line.
+  bool busy() const
+  {
+    return busy_;
+  }
   /// [s] that it has spent waiting for drives that don't answer.
   double blocked() const
   {

@@ -52,6 +52,8 @@ public:
   bool urgent() const;
   /// Another exchange is to be made.
   bool pending() const;
+  /// next() writes.
+  bool nextWrites() const;
   wire::Request next() const;
   void done(const wire::Reply& reply);
   /// How long the next exchange of the lowest class is to wait: 0, or, when all that is left was refused for the moment,

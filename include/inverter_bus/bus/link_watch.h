@@ -39,8 +39,10 @@ private:
   Duration patience_;
   TimePoint opened_at_;
   bool ever_answered_ = false;
-  /// When the first request left that was not answered since the last answer.
+  /// When the first request left that was not answered since the last answer, or since it was opened.
   std::optional<TimePoint> silent_since_;
+  /// The same, however often it was opened anew.
+  std::optional<TimePoint> unanswered_since_;
   /// Until the next renewal, while nobody answers.
   Duration period_{ 0 };
   TimePoint renewed_at_;

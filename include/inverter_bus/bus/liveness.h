@@ -52,6 +52,9 @@ public:
   /// Why no status comes, in words, from the reads since the last complete one: "answers exception 02 to the status",
   /// "damaged long replies: 221 of 369", "no long replies: 4 of 9"; empty: nothing to say beyond that no reply came.
   std::string reason() const;
+  /// Since the last complete status the drive has answered every read, and refuses for the moment (Modbus exceptions above 03:
+  /// busy, locked, running).
+  bool refusesForTheMoment() const;
   /// Error id of the last exchange that failed since the last complete status; 0: none has.
   std::uint16_t lastError() const;
 

@@ -98,6 +98,8 @@ struct InverterStatus
   drive::Monitor monitor;
   bool run_command = false;
   bool communication_error = false;
+  /// Offline, but the communication works: the drive has answered lately, and refuses to tell its status for the moment.
+  bool refuses = false;
   bool move_velocity_active = false;
   bool reset_active = false;
   bool stop_active = false;

@@ -562,11 +562,11 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
 {
   RunningJob& running = jobs_.at(id);
   Inverter& inverter = *inverters_[running.inverter];
-  const auto* reset = dynamic_cast<const ResetJob*>(running.job.get());
+  auto* reset = dynamic_cast<ResetJob*>(running.job.get());
   if (reset != nullptr && reset->resetting())
   {
     // Resetting clears the drive's words, and it may be deaf for a while.
-    if (reset->unheard())
+    if (reset->takeDeafening())
     {
       inverter.expectSilence(now, seconds(inverter.drive.profile().deaf_after_reset));
     }

@@ -254,8 +254,7 @@ bool Inverter::everKnown() const
 
 void Inverter::expectSilence(TimePoint now, Duration duration)
 {
-  // Further frames of the same reset that get lost don't prolong it.
-  silence_until_ = silence_until_ == TimePoint() ? now + duration : silence_until_;
+  silence_until_ = now + duration;
   liveness.deafUntil(silence_until_);
 }
 

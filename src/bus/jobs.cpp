@@ -206,7 +206,7 @@ Job::Progress ResetJob::refused(const wire::Reply& reply)
 
 Job::Progress ResetJob::done(const wire::Reply& reply)
 {
-  unheard_ = phase_ == Phase::Steps;
+  deafening_ = phase_ == Phase::Steps;
   if (reply.outcome == wire::Outcome::Exception)
   {
     return refused(reply);
@@ -230,6 +230,9 @@ Job::Progress ResetJob::lost(const wire::Reply& reply)
   {
     return Job::lost(reply);
   }
+  // Sent again and again to a drive that is away, a step must not prolong the deafness for ever.
+  deafening_ = phase_ == Phase::Steps && step_ >= steps_sent_;
+  steps_sent_ = deafening_ ? step_ + 1 : steps_sent_;
   // A drive that restarts after a reset is deaf for a while; leaving the reset coil on would hold it in reset.
   answer().error_id = reply.error_id;
   answer().message = "the drive did not answer after the reset";
@@ -242,9 +245,11 @@ bool ResetJob::resetting() const
   return begun_;
 }
 
-bool ResetJob::unheard() const
+bool ResetJob::takeDeafening()
 {
-  return unheard_;
+  const bool deafening = deafening_;
+  deafening_ = false;
+  return deafening;
 }
 
 // --- faults ----------------------------------------------------------------------------------------------------------

@@ -142,7 +142,7 @@ public:
   std::optional<TimePoint> serveBy(Duration deadline_margin) const;
   /// All reads that a refresh may be made of.
   std::vector<drive::ReadBlock> reads() const;
-  /// Silence is expected for so long (after a trip reset), counted from the first frame that may have caused it.
+  /// Silence is expected for so long (after a step of a trip reset).
   void expectSilence(TimePoint now, Duration duration);
   /// It has answered a frame of the reset: if it is deaf, then from the next one on.
   void noDeafness();

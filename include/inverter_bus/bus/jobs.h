@@ -78,8 +78,8 @@ public:
   Progress lost(const wire::Reply& reply) override;
   /// A reset frame has left: the drive may be deaf for a while and has forgotten its words.
   bool resetting() const;
-  /// The last frame that the drive has taken was one of the reset itself: it has not been heard since.
-  bool unheard() const;
+  /// The exchange before was a step of the reset that the drive may have taken, for the first time: its deafness begins now.
+  bool takeDeafening();
 
 private:
   enum class Phase
@@ -103,7 +103,9 @@ private:
   std::size_t step_ = 0;
   bool run_was_on_ = false;
   bool begun_ = false;
-  bool unheard_ = false;
+  bool deafening_ = false;
+  /// Steps that were sent at least once.
+  std::size_t steps_sent_ = 0;
   unsigned still_tripped_ = 0;
   unsigned resent_ = 0;
 };

@@ -75,7 +75,8 @@ void Checker::tryOpen(TimePoint now, Lane& lane)
 /// Rule 4.3. The node looks at its dead men before each exchange.
 void Checker::watchDeadMen(TimePoint now)
 {
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     Lane& lane = lanes_[index];
@@ -198,7 +199,8 @@ void Checker::shutdownEnded(TimePoint now, TimePoint begun, const std::vector<st
 /// Rules 3.1 and 4.3: while a stop waits for its first byte, nothing else goes.
 void Checker::checkStopFirst(TimePoint now)
 {
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
   std::size_t waiting = lanes_.size();
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
@@ -315,7 +317,8 @@ void Checker::checkMotion(TimePoint now)
 void Checker::checkRun(TimePoint now, Lane& lane)
 {
   const std::size_t index = *facts_.inverter;
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
   const bool just_now = now - lane.permit_off_at <= quiet;
   // MX2 and RX have a coil of its own for the direction: RUN says nothing of it.
   const bool undirected = scene_.inverters[index].brand == Brand::HITACHI;
@@ -359,7 +362,8 @@ void Checker::checkRun(TimePoint now, Lane& lane)
 void Checker::checkSetPoint(TimePoint now, Lane& lane)
 {
   const std::size_t index = *facts_.inverter;
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
   if (!lane.permit && now - lane.permit_off_at > quiet)
   {
     fail(now, "a cancelled velocity is not sent", nameOf(index));

@@ -247,6 +247,7 @@ private:
 
   // motion
   void watchDeadMen(TimePoint now);
+  bool decidedBefore(TimePoint now, TimePoint time) const;
   void checkStopFirst(TimePoint now);
   void checkOverdue(TimePoint now);
   void checkMotion(TimePoint now);

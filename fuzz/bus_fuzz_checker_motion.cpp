@@ -196,18 +196,23 @@ void Checker::shutdownEnded(TimePoint now, TimePoint begun, const std::vector<st
   }
 }
 
+/// What goes now may have been decided before \p time: a 3G3JE wants silence between the decision and the first byte, and what
+/// comes late in that silence prolongs it.
+bool Checker::decidedBefore(TimePoint now, TimePoint time) const
+{
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  const bool prolonged = scene_.compoway && time != TimePoint() && between_heard_at_ > time - quiet;
+  return now - time < quiet || prolonged;
+}
+
 /// Rules 3.1 and 4.3: while a stop waits for its first byte, nothing else goes.
 void Checker::checkStopFirst(TimePoint now)
 {
-  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
   std::size_t waiting = lanes_.size();
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     const Lane& lane = lanes_[index];
-    // A late reply in the silence that such a drive wants before a request puts off what was decided before the stop came.
-    const bool decided = scene_.compoway && lane.due && between_heard_at_ > *lane.due - quiet;
-    waiting = lane.due && *lane.due + quiet <= now && !decided && online(index) ? index : waiting;
+    waiting = lane.due && !decidedBefore(now, *lane.due) && online(index) ? index : waiting;
   }
   if (waiting == lanes_.size())
   {
@@ -317,9 +322,7 @@ void Checker::checkMotion(TimePoint now)
 void Checker::checkRun(TimePoint now, Lane& lane)
 {
   const std::size_t index = *facts_.inverter;
-  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
-  const bool just_now = now - lane.permit_off_at <= quiet;
+  const bool just_now = now == lane.permit_off_at || decidedBefore(now, lane.permit_off_at);
   // MX2 and RX have a coil of its own for the direction: RUN says nothing of it.
   const bool undirected = scene_.inverters[index].brand == Brand::HITACHI;
   facts_.reverse = undirected ? lane.hertz < 0.0 : facts_.reverse;
@@ -327,7 +330,7 @@ void Checker::checkRun(TimePoint now, Lane& lane)
   {
     fail(now, "no RUN without a fresh, allowed command", nameOf(index));
   }
-  const bool just_changed = scene_.compoway && now - lane.accepted_at <= quiet;
+  const bool just_changed = scene_.compoway && decidedBefore(now, lane.accepted_at);
   if (lane.permit && facts_.reverse != (lane.hertz < 0.0) && !just_changed)
   {
     fail(now, "the newest velocity wins", nameOf(index) + " is sent the wrong direction");
@@ -362,15 +365,13 @@ void Checker::checkRun(TimePoint now, Lane& lane)
 void Checker::checkSetPoint(TimePoint now, Lane& lane)
 {
   const std::size_t index = *facts_.inverter;
-  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
-  if (!lane.permit && now - lane.permit_off_at > quiet)
+  if (!lane.permit && now != lane.permit_off_at && !decidedBefore(now, lane.permit_off_at))
   {
     fail(now, "a cancelled velocity is not sent", nameOf(index));
   }
   const double resolution = scene_.inverters[index].brand == Brand::JE ? 0.051 : 0.0051;
   const bool newest = std::fabs(*facts_.set_hertz - std::fabs(lane.hertz)) <= resolution;
-  const bool just_changed = scene_.compoway && now - lane.accepted_at <= quiet;
+  const bool just_changed = scene_.compoway && decidedBefore(now, lane.accepted_at);
   if (lane.permit && !newest && !just_changed)
   {
     fail(now, "the newest velocity wins",

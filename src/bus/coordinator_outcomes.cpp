@@ -504,6 +504,10 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
     inverter.liveness.dataRead();
   }
   const Job::Progress progress = alive(reply) ? running.job->done(reply) : running.job->lost(reply);
+  if (alive(reply))
+  {
+    inverter.noDeafness();
+  }
   doneStep(reply.finished_at, current);
   finishExchange(current, reply, false);
   advanceJob(reply.finished_at, current.job, progress);
@@ -562,7 +566,10 @@ void Coordinator::advanceJob(TimePoint now, CommandId id, Job::Progress progress
   if (reset != nullptr && reset->resetting())
   {
     // Resetting clears the drive's words, and it may be deaf for a while.
-    inverter.expectSilence(now + seconds(inverter.drive.profile().deaf_after_reset));
+    if (reset->unheard())
+    {
+      inverter.expectSilence(now, seconds(inverter.drive.profile().deaf_after_reset));
+    }
     inverter.movement.forgetWords();
   }
   if (progress == Job::Progress::Done)

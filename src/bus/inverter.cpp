@@ -195,6 +195,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   movement.drop();
   unexpected_motion_ = false;
   reset_active = false;
+  silence_until_ = TimePoint();
   // From now on nothing of it is answered, and that is what users are told.
   lost_writes.lower();
   forgetDrive(!refused);
@@ -251,10 +252,16 @@ bool Inverter::everKnown() const
   return ever_known_;
 }
 
-void Inverter::expectSilence(TimePoint until)
+void Inverter::expectSilence(TimePoint now, Duration duration)
 {
-  silence_until_ = until;
-  liveness.watchFrom(until);
+  // Further frames of the same reset that get lost don't prolong it.
+  silence_until_ = silence_until_ == TimePoint() ? now + duration : silence_until_;
+  liveness.deafUntil(silence_until_);
+}
+
+void Inverter::noDeafness()
+{
+  silence_until_ = TimePoint();
 }
 
 wire::Request Inverter::prepared(wire::Request request) const
@@ -510,6 +517,7 @@ Judgement Inverter::judge(TimePoint now)
   const drive::Monitor& monitor = refresh.fresh();
   noteBack();
   liveness.complete(now);
+  silence_until_ = TimePoint();
   record.restart();
   interlock.online(now);
   // A status that can't tell of a trip does not end one.

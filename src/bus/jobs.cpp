@@ -206,6 +206,7 @@ Job::Progress ResetJob::refused(const wire::Reply& reply)
 
 Job::Progress ResetJob::done(const wire::Reply& reply)
 {
+  unheard_ = phase_ == Phase::Steps;
   if (reply.outcome == wire::Outcome::Exception)
   {
     return refused(reply);
@@ -239,6 +240,11 @@ Job::Progress ResetJob::lost(const wire::Reply& reply)
 bool ResetJob::resetting() const
 {
   return begun_;
+}
+
+bool ResetJob::unheard() const
+{
+  return unheard_;
 }
 
 // --- faults ----------------------------------------------------------------------------------------------------------

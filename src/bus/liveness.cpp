@@ -62,6 +62,11 @@ void Liveness::watchFrom(TimePoint time)
   since_ = std::max(since_, time);
 }
 
+void Liveness::deafUntil(TimePoint time)
+{
+  deaf_until_ = time;
+}
+
 void Liveness::complete(TimePoint now)
 {
   since_ = now;
@@ -80,7 +85,7 @@ void Liveness::missed(std::uint16_t error_id)
 bool Liveness::overdue(TimePoint now, Duration period) const
 {
   const Duration patience = std::max(seconds(SHORTEST_PATIENCE_S), PERIODS_OF_PATIENCE * period);
-  return last_error_ != 0 && now - since_ > patience;
+  return last_error_ != 0 && now - since_ > patience && now > deaf_until_;
 }
 
 void Liveness::noteRead(Duration length, const wire::Reply& reply)

@@ -124,6 +124,15 @@ TEST(Liveness, theDeafTimeOfAResetIsNotCounted)
 {
   Liveness liveness(3);
   liveness.complete(at(0));
+  liveness.deafUntil(at(6000));
+  liveness.noteRead(LONG, silence());
+  EXPECT_FALSE(liveness.overdue(at(6000), Ms(100)));
+  EXPECT_TRUE(liveness.overdue(at(6001), Ms(100)));
+}
+
+TEST(Liveness, startUpHasItsOwnTime)
+{
+  Liveness liveness(3);
   liveness.watchFrom(at(6000));
   liveness.noteRead(LONG, silence());
   EXPECT_FALSE(liveness.overdue(at(8000), Ms(100)));

@@ -314,7 +314,7 @@ TEST(Scheduler, commandsBehindAStopThatInsistsWaitForItToo)
   line.stop(0);
   EXPECT_THAT(line.exchanges(40), Not(Contains("C1")));
   line.dead.clear();
-  EXPECT_THAT(line.exchanges(10), Contains("C1"));
+  EXPECT_THAT(line.exchanges(20), Contains("C1"));
 }
 
 TEST(Scheduler, stopOfOneInverterHoldsNoCommandOfAnotherBackWhileItInsists)

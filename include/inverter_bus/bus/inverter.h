@@ -142,8 +142,10 @@ public:
   std::optional<TimePoint> serveBy(Duration deadline_margin) const;
   /// All reads that a refresh may be made of.
   std::vector<drive::ReadBlock> reads() const;
-  /// Silence up to this time is expected (after a trip reset).
-  void expectSilence(TimePoint until);
+  /// Silence is expected for so long (after a trip reset), counted from the first frame that may have caused it.
+  void expectSilence(TimePoint now, Duration duration);
+  /// It has answered a frame of the reset: if it is deaf, then from the next one on.
+  void noDeafness();
 
   wire::Request prepared(wire::Request request) const;
   /// Identity and what the drive must be told are settled before its first status.

@@ -78,6 +78,8 @@ public:
   Progress lost(const wire::Reply& reply) override;
   /// A reset frame has left: the drive may be deaf for a while and has forgotten its words.
   bool resetting() const;
+  /// The last frame that the drive has taken was one of the reset itself: it has not been heard since.
+  bool unheard() const;
 
 private:
   enum class Phase
@@ -101,6 +103,7 @@ private:
   std::size_t step_ = 0;
   bool run_was_on_ = false;
   bool begun_ = false;
+  bool unheard_ = false;
   unsigned still_tripped_ = 0;
   unsigned resent_ = 0;
 };

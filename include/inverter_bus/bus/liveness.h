@@ -34,8 +34,10 @@ public:
   bool needsRead() const;
 
   // --- the age of the status ------------------------------------------------------------------------------------------
-  /// The watch begins at this time: nothing that came before was to be expected (start-up, a reset's deaf time).
+  /// The watch begins at this time: nothing that came before was to be expected (start-up).
   void watchFrom(TimePoint time);
+  /// Until then no status is expected (a reset's deaf time).
+  void deafUntil(TimePoint time);
   void complete(TimePoint now);
   /// An exchange of any kind was lost: from now on a missing status is the inverter's own.
   void missed(std::uint16_t error_id);
@@ -71,6 +73,7 @@ private:
   bool read_failed_ = false;
 
   TimePoint since_;
+  TimePoint deaf_until_;
 
   /// By length, since the last complete status.
   std::map<Duration, Reads> reads_;

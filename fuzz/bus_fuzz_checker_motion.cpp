@@ -75,7 +75,8 @@ void Checker::tryOpen(TimePoint now, Lane& lane)
 /// Rule 4.3. The node looks at its dead men before each exchange.
 void Checker::watchDeadMen(TimePoint now)
 {
-  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  // The silence before its frame comes after the decision, and a second master's frame in it makes it longer.
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) + babble(now) : Duration{ 0 };
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     Lane& lane = lanes_[index];

@@ -2,6 +2,7 @@
 """`make install` into an empty directory: the installed tree runs by itself, with its own profiles and launch files."""
 import glob
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -29,7 +30,10 @@ class InstalledTree(unittest.TestCase):
                            'ROS_MASTER_URI': 'http://127.0.0.1:%d' % free_port(), 'ROS_IP': '127.0.0.1'}
         # A profile that only the installed tree has.
         drives = os.path.join(cls.share, 'config', 'drives')
-        shutil.copy(os.path.join(drives, 'omron_mx2.yaml'), os.path.join(drives, 'only_here.yaml'))
+        with open(os.path.join(drives, 'omron_mx2.yaml')) as shipped:
+            own = re.sub(r'^drive: omron_mx2$', 'drive: only_here', shipped.read(), flags=re.MULTILINE)
+        with open(os.path.join(drives, 'only_here.yaml'), 'w') as copy:
+            copy.write(own)
         cls.master = subprocess.Popen(['bash', '-c', cls.in_tree('exec rosmaster --core -p %s' %
                                                                   cls.environment['ROS_MASTER_URI'].rsplit(':')[-1])],
                                       env=cls.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

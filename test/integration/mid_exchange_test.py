@@ -134,10 +134,11 @@ class MidExchange(unittest.TestCase):
 
     def testAStopThatMissesItsBoundLeavesAFlightRecorderFile(self):
         """Rule 4.11: the whole driver is held up, as by a machine that swaps, with an accepted stop in its hands."""
-        for _ in range(5):
+        for _ in range(10):
             self.holdUpAStop()
-            # On a busy machine the call may arrive when the exchange is over: then the stop was not late.
-            if self.bench.bus_status.stop_latency_max > PATIENCE_OF_THE_LINE:
+            # On a busy machine the call may arrive when the exchange is over: then the stop was not late, or not by much more
+            # than its bound, which holds the longest exchange with its pauses.
+            if self.bench.bus_status.stop_latency_max > 1.4 * PATIENCE_OF_THE_LINE:
                 break
         wait_for(lambda: [text for text in self.bench.traces() if 'to the wire' in text], 'a flight recorder file')
         wait_for(lambda: self.bench.bus_status.stop_latency_max > PATIENCE_OF_THE_LINE, 'the latency in bus_status')

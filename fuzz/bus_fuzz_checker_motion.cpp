@@ -219,7 +219,9 @@ void Checker::checkStopFirst(TimePoint now)
     return;
   }
   // Several stops take turns, each once before one is repeated.
-  const bool first = facts_.inverter && lanes_[*facts_.inverter].stop_sent < *lanes_[waiting].due;
+  // What a command of 0 had decided before the stop came was no frame of that stop.
+  const Duration quiet = scene_.compoway ? seconds(QUIET_S) : Duration{ 0 };
+  const bool first = facts_.inverter && lanes_[*facts_.inverter].stop_sent < *lanes_[waiting].due + quiet;
   if (!facts_.stop || !(facts_.broadcast || first))
   {
     fail(now, "a stop is the next frame on the wire",

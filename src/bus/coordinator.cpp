@@ -161,10 +161,11 @@ void Coordinator::expireJobs(TimePoint now)
 
 void Coordinator::publishSlowly(TimePoint now)
 {
+  // Behind a gateway that is kept busy no refresh comes, but locks and stops are to be seen.
+  const bool busy = !gateway_.free(now);
   for (const auto& inverter : inverters_)
   {
-    // Behind a gateway that is kept busy no refresh comes, but locks and stops are to be seen.
-    const bool held_up = !gateway_.free(now) && inverter->known();
+    const bool held_up = busy && inverter->known();
     if ((inverter->offline() || held_up) && now - last_published_[inverter->index] >= seconds(STATUS_PERIOD_OFFLINE_S))
     {
       publish(now, *inverter);

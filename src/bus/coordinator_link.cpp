@@ -23,12 +23,6 @@ constexpr unsigned TELNET_STOP_ATTEMPTS = 1;
 constexpr double UNPROVEN_PERIOD_S = 0.02;
 // Contract, 8.10: the link is not renewed within a stop's first tries.
 constexpr unsigned STOP_TRIES_BEFORE_RENEWAL = 3;
-
-/// Modbus over serial line V1.02, section 2.2: individual slaves.
-bool isSerialStation(std::uint8_t station)
-{
-  return station >= 1 && station <= 247;
-}
 }  // namespace
 
 // --- gateway ---------------------------------------------------------------------------------------------------------
@@ -107,6 +101,10 @@ void Coordinator::tellOfTheGateway()
 Gate Coordinator::gate(TimePoint now)
 {
   Gate gate;
+  if (!gateway_.active())
+  {
+    return gate;
+  }
   if (const auto kept = gateway_.tick(now))
   {
     scheduler_->chargeProbe(now, *kept);
@@ -146,6 +144,10 @@ TimePoint Coordinator::stopNotBefore(TimePoint now, const Inverter& inverter) co
 /// A velocity of 0 that can't be confirmed now takes the way of a stop, which knows how to insist.
 void Coordinator::stopInsteadOfZeros(TimePoint now)
 {
+  if (!gateway_.active())
+  {
+    return;
+  }
   for (const auto& inverter : inverters_)
   {
     const auto& target = inverter->movement.target();
@@ -298,11 +300,11 @@ void Coordinator::noteConnection(TimePoint now, const Current& current, const wi
   }
 }
 
-/// A drive with a port of its own (tcp://, no station of a serial line) that has not told its status yet: to a gateway the same
-/// number means something else, so that nothing but reads goes there (contract, 8.8).
+/// A drive with a port of its own that has not told its status yet: to a gateway the same number means something else, so that
+/// nothing but reads goes there (contract, 8.8).
 bool Coordinator::untested(const Inverter& inverter) const
 {
-  return configuration_.bus.modbus_tcp && !isSerialStation(inverter.config.node) && !inverter.everKnown();
+  return inverter.config.ownPort() && !inverter.everKnown();
 }
 
 /// Nothing but reads and stops goes to somebody who may be a telnet server (contract, 8.11).

@@ -16,18 +16,13 @@ namespace
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 // A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
 constexpr double PORT_WORKS_AFTER_S = 3.0;
-
-bool alive(const wire::Reply& reply)
-{
-  return reply.outcome == wire::Outcome::Ok || reply.outcome == wire::Outcome::Exception;
-}
 }  // namespace
 
 /// Lost or damaged: is it to be repeated?
 bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 {
   // A gateway that says that the drive is silent has tried itself.
-  if (alive(reply) || reply.gateway_code != 0)
+  if (isAnswered(reply) || reply.gateway_code != 0)
   {
     tries = 0;
     return false;
@@ -90,26 +85,26 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     noteConnection(reply.finished_at, current, reply);
   }
   inverter.noteCost(current.pick.probe, reply.outcome, probePrice(current, reply));
-  if (current.request.expects_reply && !alive(reply) && !behind_another_)
+  if (current.request.expects_reply && !isAnswered(reply) && !behind_another_)
   {
     inverter.liveness.missed(reply.error_id);
   }
-  if (current.request.expects_reply && alive(reply))
+  if (current.request.expects_reply && isAnswered(reply))
   {
     inverter.answered(reply);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
-  if (current.loopback && (current.resync || alive(reply)))
+  if (current.loopback && (current.resync || isAnswered(reply)))
   {
     inverter.loopback.note(reply.outcome);
   }
-  else if (!current.loopback && alive(reply))
+  else if (!current.loopback && isAnswered(reply))
   {
     inverter.loopback.otherAnswered();
   }
   // A loop-back that is refused has put nothing into step: to a stop that is a failed attempt.
   const bool refused_stop = current.purpose == Purpose::StopFrame && reply.outcome == wire::Outcome::Exception;
-  if (current.resync && alive(reply) && !refused_stop)
+  if (current.resync && isAnswered(reply) && !refused_stop)
   {
     // The line is in step again: the real request keeps its turn.
     finishExchange(current, reply, true);
@@ -131,12 +126,12 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       break;
     case Purpose::KeepAlive:
       // One that is lost gives the turn away.
-      finishExchange(current, reply, alive(reply));
+      finishExchange(current, reply, isAnswered(reply));
       if (reply.outcome == wire::Outcome::Ok)
       {
         inverter.liveness.dataRead();
       }
-      if (!alive(reply))
+      if (!isAnswered(reply))
       {
         noteLost(reply.finished_at, inverter, reply.error_id);
       }
@@ -154,7 +149,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
 void Coordinator::finishExchange(const Current& current, const wire::Reply& reply, bool more)
 {
   Duration cost{ 0 };
-  if (current.purpose == Purpose::Refresh && alive(reply))
+  if (current.purpose == Purpose::Refresh && isAnswered(reply))
   {
     cost = line_.cost(current.request, Duration{ 0 });
   }
@@ -163,7 +158,7 @@ void Coordinator::finishExchange(const Current& current, const wire::Reply& repl
   {
     return;
   }
-  scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, alive(reply));
+  scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, isAnswered(reply));
   if (current.pick.probe && reply.outcome != wire::Outcome::Ok)
   {
     scheduler_->chargeProbe(reply.finished_at, probePrice(current, reply));
@@ -259,7 +254,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     }
     return;
   }
-  if (gateway_.active() && alive(reply))
+  if (gateway_.active() && isAnswered(reply))
   {
     const auto latency = inverter.stop.answered(reply.finished_at);
     if (latency && !current.pick.probe)
@@ -286,7 +281,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     stopConfirmed(reply.finished_at, inverter);
   }
-  if (alive(reply))
+  if (isAnswered(reply))
   {
     if (reply.outcome == wire::Outcome::Exception)
     {
@@ -335,7 +330,7 @@ void Coordinator::doneVelocity(const Current& current, const wire::Reply& reply)
     // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
     inverter.movement.doubtful(current.write, now);
   }
-  const bool lost = !alive(reply);
+  const bool lost = !isAnswered(reply);
   // A loop-back that was lost writes nothing.
   const bool too_many = lost && !current.resync && !behind_another_ && inverter.lost_writes.lost();
   // A gateway that says so itself has tried already.
@@ -376,7 +371,7 @@ void Coordinator::failVelocity(const Current& current, const wire::Reply& reply,
   const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
   inverter.velocityFailed(reply.error_id, refusalText(inverter, reply.error_id));
   inverter.movement.giveUp();
-  if (!alive(reply) && (too_many_lost || inverter.movement.runPossible()))
+  if (!isAnswered(reply) && (too_many_lost || inverter.movement.runPossible()))
   {
     writesLost(reply.finished_at, inverter);
     return;
@@ -503,15 +498,15 @@ void Coordinator::doneJob(const Current& current, const wire::Reply& reply)
   {
     inverter.liveness.dataRead();
   }
-  const Job::Progress progress = alive(reply) ? running.job->done(reply) : running.job->lost(reply);
-  if (alive(reply))
+  const Job::Progress progress = isAnswered(reply) ? running.job->done(reply) : running.job->lost(reply);
+  if (isAnswered(reply))
   {
     inverter.noDeafness();
   }
   doneStep(reply.finished_at, current);
   finishExchange(current, reply, false);
   advanceJob(reply.finished_at, current.job, progress);
-  if (!alive(reply))
+  if (!isAnswered(reply))
   {
     noteLost(reply.finished_at, inverter, reply.error_id);
   }
@@ -590,12 +585,12 @@ void Coordinator::doneRefresh(const Current& current, const wire::Reply& reply)
 {
   Inverter& inverter = *inverters_[current.inverter];
   // What waited in a gateway behind an older request says nothing of this inverter.
-  const bool says_nothing = behind_another_ && !alive(reply);
+  const bool says_nothing = behind_another_ && !isAnswered(reply);
   if (!current.resync && !says_nothing)
   {
     inverter.liveness.noteRead(line_.cost(current.request, Duration{ 0 }), reply);
   }
-  if (alive(reply))
+  if (isAnswered(reply))
   {
     inverter.refresh_tries = 0;
     if (reply.outcome == wire::Outcome::Ok)
@@ -687,7 +682,7 @@ void Coordinator::actOn(TimePoint now, Inverter& inverter, const Judgement& judg
 void Coordinator::doneSetting(const Current& current, const wire::Reply& reply)
 {
   Inverter& inverter = *inverters_[current.inverter];
-  if (alive(reply))
+  if (isAnswered(reply))
   {
     inverter.settings_tries = 0;
     inverter.settled(reply.finished_at, reply);

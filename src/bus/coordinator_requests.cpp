@@ -2,7 +2,6 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "inverter_bus/bus/coordinator.h"
 #include "inverter_bus/wire/shown.h"
@@ -26,13 +25,6 @@ int rank(std::uint16_t error_id)
                                                 ERROR_NOT_ARMED,     ERROR_OFFLINE,      ERROR_CANCELLED,
                                                 ERROR_LOCKED };
   return static_cast<int>(std::find(ORDER.begin(), ORDER.end(), error_id) - ORDER.begin());
-}
-
-std::string idText(std::uint16_t error_id)
-{
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "0x%04X", error_id);
-  return text.data();
 }
 }  // namespace
 
@@ -216,7 +208,7 @@ void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, con
   refusals_.refused(now, culprit, error_id,
                     (command.grouped ? "group refused: " : "refused: ") + reasons +
                         (others == 0 ? "" : "; and " + std::to_string(others) + " more of the group") + " (" +
-                        idText(error_id) + ")");
+                        errorIdText(error_id) + ")");
 }
 
 void Coordinator::noteGroupError(TimePoint now, std::uint16_t error_id)

@@ -30,6 +30,13 @@ bool isLastingRefusal(const wire::Reply& reply)
   return reply.outcome == wire::Outcome::Exception && reply.pdu.size() > 1 && reply.pdu[1] <= LAST_LASTING_EXCEPTION;
 }
 
+std::string errorIdText(std::uint16_t error_id)
+{
+  char text[8];
+  std::snprintf(text, sizeof text, "0x%04X", error_id);
+  return text;
+}
+
 std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code)
 {
   if (error_id == wire::ERROR_TIMEOUT && gateway_code != 0)

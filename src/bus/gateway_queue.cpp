@@ -45,8 +45,6 @@ void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverte
   entry.probe = probe;
   entry.sent_at = now;
   entry.behind_another = !free(now);
-  last_ticket_ = ticket;
-  last_behind_another_ = entry.behind_another;
   entries_.push_back(entry);
 }
 
@@ -191,7 +189,8 @@ std::optional<TimePoint> GatewayQueue::motionUntil(TimePoint now, std::size_t in
 
 bool GatewayQueue::behindAnother(std::uint64_t ticket) const
 {
-  return settings_.active && ticket == last_ticket_ && last_behind_another_;
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [ticket](const Entry& entry) { return entry.ticket == ticket && entry.behind_another; });
 }
 
 // --- what it has learned ---------------------------------------------------------------------------------------------
@@ -217,11 +216,6 @@ Duration GatewayQueue::wait() const
 {
   return silentByNature() ? std::min(settings_.timeout, longest_reply_ + settings_.response_timeout)
                           : settings_.timeout;
-}
-
-Duration GatewayQueue::longestReply() const
-{
-  return longest_reply_;
 }
 }  // namespace bus
 }  // namespace inverter_bus

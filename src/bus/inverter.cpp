@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "inverter_bus/bus/own_exceptions.h"
 #include "inverter_bus/wire/shown_number.h"
@@ -42,13 +41,6 @@ std::string listed(const std::vector<int>& codes)
   {
     text += (text.empty() ? "" : ", ") + std::to_string(code);
   }
-  return text;
-}
-
-std::string hex(std::uint16_t value)
-{
-  char text[8];
-  std::snprintf(text, sizeof text, "0x%04X", value);
   return text;
 }
 
@@ -840,7 +832,7 @@ std::string Inverter::offlineReason() const
 
 std::string Inverter::offlineText(TimePoint now) const
 {
-  std::string text = "offline (" + hex(exchange_error_) + " " + offlineReason() + "; last answer ";
+  std::string text = "offline (" + errorIdText(exchange_error_) + " " + offlineReason() + "; last answer ";
   text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
   return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
 }
@@ -857,7 +849,7 @@ std::vector<Finding> Inverter::errors(TimePoint now) const
   std::vector<Finding> findings;
   if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
   {
-    findings.push_back({ Level::Error, "offline (" + hex(exchange_error_) +
+    findings.push_back({ Level::Error, "offline (" + errorIdText(exchange_error_) +
                                            "), since the port is not open: what to do about it is told of the bus" });
     return findings;
   }

@@ -69,6 +69,22 @@ protected:
     }
   }
 
+  /// The gateway keeps the RUN of A (coil 0000 on the wire) for \p time [s] before it carries it out.
+  void holdTheRun(double time)
+  {
+    bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
+    bus_->gateway().behaviour.hold_time = time;
+  }
+
+  /// A is commanded, and its RUN has been in the gateway for a moment.
+  void startAHeldRun(double time)
+  {
+    holdTheRun(time);
+    bus_->command(A, 20.0);
+    ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
+    bus_->run(0.1);
+  }
+
   bool online(std::size_t index) const
   {
     return bus_->hasStatus(index) && !bus_->status(index).communication_error;
@@ -348,11 +364,7 @@ TEST_F(BehindAGateway, aLateRunIsFollowedByAStopThatCounts)
   start();
   bus_->settleIn(20.0);
   // The gateway hangs for 1.5 s just as the RUN (coil 0000 on the wire) is its next request, and then carries it out.
-  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
-  bus_->gateway().behaviour.hold_time = 1.5;
-  bus_->command(A, 20.0);
-  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
-  bus_->run(0.1);
+  startAHeldRun(1.5);
   const TimePoint called = bus_->now();
   const auto box = bus_->stop(A);
   ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") > 0.0; })) << "the old RUN";
@@ -369,11 +381,7 @@ TEST_F(BehindAGateway, aZeroAfterALateRunInsistsLikeAStop)
 {
   start();
   bus_->settleIn(20.0);
-  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
-  bus_->gateway().behaviour.hold_time = 1.5;
-  bus_->command(A, 20.0);
-  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
-  bus_->run(0.1);
+  startAHeldRun(1.5);
   bus_->command(A, 0.0);
   bus_->run(1.0);
   EXPECT_TRUE(bus_->status(A).locked) << "until it is confirmed";
@@ -386,11 +394,7 @@ TEST_F(BehindAGateway, aRunThatIsCarriedOutAfterItsConnectionHasEndedIsStopped)
 {
   start();
   bus_->settleIn(20.0);
-  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
-  bus_->gateway().behaviour.hold_time = 2.0;
-  bus_->command(A, 20.0);
-  ASSERT_TRUE(bus_->runUntil(20.0, [&] { return bus_->gateway().held() > 0; }));
-  bus_->run(0.1);
+  startAHeldRun(2.0);
   bus_->gateway().hangUp();
   const auto box = bus_->stop(A);
   bus_->wait(box);
@@ -406,9 +410,8 @@ TEST_F(BehindAGateway, aRunThatWasUnderWayWhenItsConnectionWasLostIsStopped)
     start();
     bus_->settleIn(20.0);
     // Another queue of the gateway carries it out 2 s later, when the stop over the next connection is long answered.
-    bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
-    bus_->gateway().behaviour.hold_time = 2.0;
     bus_->gateway().behaviour.hold_aside = true;
+    holdTheRun(2.0);
     bus_->command(A, 20.0);
     onHold([this, in_good_order] {
       in_good_order ? bus_->gateway().hangUp() : bus_->gateway().cut();
@@ -454,9 +457,8 @@ TEST_F(BehindAGateway, shutdownOutlastsARunThatIsUnderWay)
 {
   start();
   bus_->settleIn(20.0);
-  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0xFF };
-  bus_->gateway().behaviour.hold_time = 2.7;
   bus_->gateway().behaviour.hold_aside = true;
+  holdTheRun(2.7);
   bus_->command(A, 20.0);
   onHold([this] { bus_->gateway().hangUp(); });
   ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->gateway().closed() > 0; }));

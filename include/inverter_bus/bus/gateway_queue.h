@@ -97,8 +97,6 @@ public:
   bool silentByNature() const;
   /// How long a lost request is waited for, counted from when it was sent.
   Duration wait() const;
-  /// Longest time to an answer that came in time.
-  Duration longestReply() const;
 
 private:
   struct Entry
@@ -121,9 +119,6 @@ private:
 
   Settings settings_;
   std::vector<Entry> entries_;
-  /// Whether the last request sent was behind another one.
-  std::uint64_t last_ticket_ = 0;
-  bool last_behind_another_ = false;
   Duration block_{ 0 };
   Duration longest_reply_{ 0 };
   /// Lost requests in a row that were not answered within `gateway_timeout`.

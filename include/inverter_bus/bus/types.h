@@ -30,6 +30,9 @@ constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
 /// One sentence for an error id that needs no drive to explain it.
 std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code = 0);
 
+/// An error id as the documents write it: "0x0205".
+std::string errorIdText(std::uint16_t error_id);
+
 /// The drive has no such request: Modbus exceptions 01 to 03 (function, address, count) speak of the request itself, later
 /// ones of the moment (busy, locked, running). CompoWay/F has response codes for both.
 bool isLastingRefusal(const wire::Reply& reply);

@@ -677,6 +677,11 @@ void Checker::published(TimePoint now, const bus::InverterStatus& status)
     // The first of its reads may have told of the trip long before the last one.
     const TimePoint before = lane.heard_of ? lane.status.stamp : now;
     lockUp(now, lane, false);
+    for (auto& stream : lane.streams)
+    {
+      // A 0 that came between the two may have come after the lock.
+      stream.second.neutral = stream.second.zeroed_at > before && stream.second.zeroed_at == stream.second.last;
+    }
     lane.locked_at = before;
     lane.open_at = before;
     lane.needs_no_fault = true;

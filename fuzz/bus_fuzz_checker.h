@@ -154,6 +154,7 @@ private:
     std::optional<TimePoint> refused_at;  ///< the first one that was refused since the last accepted command
     int run_copies = 0;
     int set_copies = 0;
+    int run_set_copies = 0;  ///< in one frame with RUN
     bool run_sent = false;
     bool run_answered = false;
     bool run_reverse = false;

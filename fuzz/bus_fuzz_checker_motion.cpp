@@ -389,7 +389,9 @@ void Checker::checkSetPoint(TimePoint now, Lane& lane)
   {
     fail(now, "no velocity is queued twice", nameOf(index) + " has confirmed it already");
   }
-  if (!just_changed && ++lane.set_copies > scene_.retries + 1)
+  // A block write tells all words at once, also where it is selected between the set-point and RUN.
+  int& copies = facts_.run ? lane.run_set_copies : lane.set_copies;
+  if (!just_changed && ++copies > scene_.retries + 1)
   {
     fail(now, "no velocity is queued twice", nameOf(index) + ": more copies of a set-point than retries");
   }
@@ -584,6 +586,7 @@ void Checker::accept(TimePoint now, std::size_t index, double velocity, const bu
   lane.commander = publisher.name;
   lane.run_copies = 0;
   lane.set_copies = 0;
+  lane.run_set_copies = 0;
   lane.zero_due.reset();
 }
 }  // namespace fuzz

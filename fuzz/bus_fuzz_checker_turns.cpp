@@ -42,7 +42,8 @@ bool Checker::waits(TimePoint now, std::size_t index) const
                         std::fabs(*lane.held - std::fabs(lane.hertz)) < SET_POINT_STEP_HZ;
   // The dead man ends a command of which nothing was sent as well.
   const bool commanded = lane.permit && lane.fed && !lane.settled && !in_force && lane.run_copies == 0 &&
-                         lane.set_copies == 0 && !lane.set_answered && lane.accepted_at < turn_began_;
+                         lane.set_copies + lane.run_set_copies == 0 && !lane.set_answered &&
+                         lane.accepted_at < turn_began_;
   const double timeout = scene_.inverters[index].drive_timeout;
   const bool near = timeout > 0.0 && lane.timeout_known && lane.status.run_command && lane.last_heard &&
                     now - *lane.last_heard > seconds(NEAR_SHARE * timeout);
@@ -54,7 +55,10 @@ bool Checker::waits(TimePoint now, std::size_t index) const
 void Checker::checkTurn(TimePoint now)
 {
   const std::optional<std::size_t> last = turn_of_;
-  const bool of_stop = facts_.broadcast || facts_.stop || (facts_.inverter && lanes_[*facts_.inverter].stopping);
+  // Before a stop that a late reply could answer goes a loop-back, also before that of a 0.
+  const bool before_stop = facts_.loopback && facts_.inverter && !lanes_[*facts_.inverter].permit;
+  const bool of_stop =
+      facts_.broadcast || facts_.stop || before_stop || (facts_.inverter && lanes_[*facts_.inverter].stopping);
   turn_of_ = of_stop ? std::optional<std::size_t>() : facts_.inverter;
   // The lowest class has every eighth exchange, whoever waits.
   const bool again = turn_of_ && last == turn_of_ && !answered_before_ && !facts_.reads_parameter && !shutting_down_;

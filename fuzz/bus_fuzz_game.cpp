@@ -628,7 +628,8 @@ void Game::calmDown()
   });
   require(seconds(ANSWERED_S), "every call is answered", [this] { return world_.checker().openCalls() == 0; });
   resetAll();
-  require(seconds(UNLOCKED_S + 2.0 * cycle), "every lock opens, every status is fresh", [this, cycle] {
+  // That it is open shows in the next status.
+  require(seconds(UNLOCKED_S + share + 2.0 * cycle), "every lock opens, every status is fresh", [this, cycle] {
     return allOf([this, cycle](std::size_t index) {
       const bus::InverterStatus& status = world_.checker().status(index);
       return world_.checker().online(index) && !status.locked && !status.stop_active &&

@@ -12,7 +12,8 @@ namespace bus
 {
 namespace
 {
-// A velocity unit that newer and newer targets keep going makes room for others after so many frames per inverter.
+// A velocity unit that newer and newer targets keep going before it is complete makes room for others after so many frames
+// per inverter.
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 // A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
 constexpr double PORT_WORKS_AFTER_S = 3.0;
@@ -85,7 +86,8 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     noteConnection(reply.finished_at, current, reply);
   }
   inverter.noteCost(current.pick.probe, reply.outcome, probePrice(current, reply));
-  if (current.request.expects_reply && !isAnswered(reply) && !behind_another_)
+  const bool read_of_refresh = current.purpose == Purpose::Refresh && !current.resync;
+  if (current.request.expects_reply && !isAnswered(reply) && !behind_another_ && !read_of_refresh)
   {
     inverter.liveness.missed(reply.error_id);
   }
@@ -446,17 +448,18 @@ void Coordinator::finishVelocity(const Current& current, const wire::Reply& repl
 {
   Inverter& inverter = *inverters_[current.inverter];
   const bool complete = !inverter.movement.next();
-  const bool too_long = inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  // A newer target has come during its last frame: it has its own place in the order (contract, 3.6 and 8.1).
+  const bool over = current.write.last || inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
   if (complete)
   {
     inverter.velocityConfirmed();
   }
-  if (complete || too_long)
+  if (complete || over)
   {
     scheduler_->eraseVelocity(current.inverter);
   }
   finishExchange(current, reply, !scheduler_->members(current.pick.command).empty());
-  if (!complete && too_long)
+  if (!complete && over)
   {
     inverter.velocity_frames = 0;
     WaitingCommand waiting;

@@ -14,6 +14,8 @@ namespace
 // Contract, 8.15.
 constexpr double SHORTEST_PATIENCE_S = 2.0;
 constexpr int PERIODS_OF_PATIENCE = 3;
+// A single one may be the line's, and the next turn far away.
+constexpr unsigned MISSES_OF_ITS_OWN = 2;
 constexpr std::uint16_t MODBUS_EXCEPTIONS = 0x8000;
 
 std::string refusalText(std::uint16_t error_id)
@@ -73,6 +75,7 @@ void Liveness::complete(TimePoint now)
   reads_.clear();
   last_error_ = 0;
   refusal_ = 0;
+  misses_ = 0;
   answers_some_ = false;
   dataRead();
 }
@@ -80,12 +83,13 @@ void Liveness::complete(TimePoint now)
 void Liveness::missed(std::uint16_t error_id)
 {
   last_error_ = error_id;
+  ++misses_;
 }
 
 bool Liveness::overdue(TimePoint now, Duration period) const
 {
   const Duration patience = std::max(seconds(SHORTEST_PATIENCE_S), PERIODS_OF_PATIENCE * period);
-  return last_error_ != 0 && now - since_ > patience && now > deaf_until_;
+  return misses_ >= MISSES_OF_ITS_OWN && now - since_ > patience && now > deaf_until_;
 }
 
 void Liveness::noteRead(Duration length, const wire::Reply& reply)
@@ -108,7 +112,7 @@ void Liveness::noteRead(Duration length, const wire::Reply& reply)
       ++reads.lost;
       break;
   }
-  last_error_ = reply.error_id;
+  missed(reply.error_id);
 }
 
 bool Liveness::refusesForTheMoment() const

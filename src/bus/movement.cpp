@@ -152,13 +152,17 @@ bool Movement::startsWith(const drive::Word& word) const
 std::optional<Write> Movement::next() const
 {
   std::optional<Write> newer_frequency;
-  for (const drive::Word& word : wantedWords())
+  const std::vector<drive::Word> words = wantedWords();
+  const auto missing =
+      std::count_if(words.begin(), words.end(), [this](const drive::Word& word) { return !isConfirmed(word); });
+  for (const drive::Word& word : words)
   {
     if (isConfirmed(word))
     {
       continue;
     }
     Write write;
+    write.last = missing == 1;
     write.point = word.first;
     write.raw = word.second;
     write.starts = startsWith(word);
@@ -191,6 +195,7 @@ std::optional<Write> Movement::nextCombined(const std::optional<drive::ReadBlock
   write.starts = std::any_of(words.begin(), words.end(),
                              [this](const drive::Word& word) { return startsWith(word) && !isConfirmed(word); });
   write.request = read ? drive_.writeAndRead(config_.node, words, *read) : drive_.writeChosen(config_.node, words);
+  write.last = true;
   return write;
 }
 

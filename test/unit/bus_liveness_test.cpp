@@ -78,6 +78,7 @@ TEST(Liveness, withoutAStatusItIsOverdueAfterTwoSeconds)
   Liveness liveness(3);
   liveness.complete(at(1000));
   liveness.noteRead(LONG, silence());
+  liveness.noteRead(LONG, silence());
   EXPECT_FALSE(liveness.overdue(at(3000), Ms(100)));
   EXPECT_TRUE(liveness.overdue(at(3001), Ms(100)));
 }
@@ -86,6 +87,7 @@ TEST(Liveness, oneThatIsReadSeldomHasThreeOfItsPeriods)
 {
   Liveness liveness(3);
   liveness.complete(at(1000));
+  liveness.noteRead(LONG, silence());
   liveness.noteRead(LONG, silence());
   EXPECT_FALSE(liveness.overdue(at(31000), Ms(10000)));
   EXPECT_TRUE(liveness.overdue(at(31001), Ms(10000)));
@@ -99,10 +101,21 @@ TEST(Liveness, oneThatWasNotAskedIsNotOverdue)
   EXPECT_FALSE(liveness.overdue(at(60000), Ms(100)));
 }
 
+TEST(Liveness, oneThatLostASingleExchangeAndWasNotAskedSinceIsNotOverdue)
+{
+  Liveness liveness(3);
+  liveness.complete(at(0));
+  liveness.noteRead(LONG, damage());
+  EXPECT_FALSE(liveness.overdue(at(60000), Ms(100)));
+  liveness.noteRead(LONG, damage());
+  EXPECT_TRUE(liveness.overdue(at(60000), Ms(100)));
+}
+
 TEST(Liveness, aMissingStatusIsItsOwnOnceItHasLostAnything)
 {
   Liveness liveness(3);
   liveness.complete(at(0));
+  liveness.missed(wire::ERROR_TIMEOUT);
   liveness.missed(wire::ERROR_TIMEOUT);
   EXPECT_TRUE(liveness.overdue(at(2001), Ms(100)));
   EXPECT_EQ(liveness.lastError(), wire::ERROR_TIMEOUT);
@@ -126,6 +139,7 @@ TEST(Liveness, theDeafTimeOfAResetIsNotCounted)
   liveness.complete(at(0));
   liveness.deafUntil(at(6000));
   liveness.noteRead(LONG, silence());
+  liveness.noteRead(LONG, silence());
   EXPECT_FALSE(liveness.overdue(at(6000), Ms(100)));
   EXPECT_TRUE(liveness.overdue(at(6001), Ms(100)));
 }
@@ -134,6 +148,7 @@ TEST(Liveness, startUpHasItsOwnTime)
 {
   Liveness liveness(3);
   liveness.watchFrom(at(6000));
+  liveness.noteRead(LONG, silence());
   liveness.noteRead(LONG, silence());
   EXPECT_FALSE(liveness.overdue(at(8000), Ms(100)));
   EXPECT_TRUE(liveness.overdue(at(8001), Ms(100)));

@@ -39,10 +39,10 @@ public:
   /// Until then no status is expected (a reset's deaf time).
   void deafUntil(TimePoint time);
   void complete(TimePoint now);
-  /// An exchange of any kind was lost: from now on a missing status is the inverter's own.
+  /// An exchange that is no read of a refresh was lost; see noteRead() for those.
   void missed(std::uint16_t error_id);
-  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked and did not tell: who was not asked, because
-  /// others took the time, is not to blame. \p period is the longest time between two refreshes of this inverter as the
+  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked more than once and did not tell: who was not
+  /// asked, because others took the time, is not to blame, nor is who lost one exchange and was not asked since. \p period is the longest time between two refreshes of this inverter as the
   /// configuration has it, with what a gateway adds.
   bool overdue(TimePoint now, Duration period) const;
 
@@ -79,6 +79,8 @@ private:
   std::map<Duration, Reads> reads_;
   std::uint16_t last_error_ = 0;
   std::uint16_t refusal_ = 0;
+  /// Exchanges that brought nothing.
+  unsigned misses_ = 0;
   /// A read was answered after one that was not: the drive is there.
   bool answers_some_ = false;
 };

@@ -49,6 +49,8 @@ struct Write
   wire::Request request;
   /// Puts RUN on: from its first byte on the motor counts as running.
   bool starts = false;
+  /// With it all of the target is told: what a newer one wants after it is a command of its own.
+  bool last = false;
 };
 
 /// The way from an accepted velocity to the words that the drive has confirmed (contract, sections 2 and 3.5): sends what

@@ -503,7 +503,7 @@ void Coordinator::stopConfirmed(TimePoint now, Inverter& inverter)
 ServiceBounds Coordinator::bounds() const
 {
   ServiceBounds bounds;
-  // Slow buses and long scan lists get more time; the README states how much.
+  // Slow buses and long scan lists get more time; docs/commands.md states how much.
   const double exchange = toSeconds(budget_.longest_exchange);
   const double inverters = static_cast<double>(inverters_.size());
   bounds.stop = std::max(bounds.stop, 3.0 * exchange * inverters);

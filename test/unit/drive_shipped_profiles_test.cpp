@@ -206,7 +206,7 @@ TEST(DriveShippedProfiles, TheStoreFlagOfAnRxIsNotAskedUntilConfirmed)
   EXPECT_TRUE(shipped("omron_rx", changes).readStoreBusy(1).has_value());
 }
 
-// --- what each drive does as shipped, and after what the README tells the user to give --------------------------------
+// --- what each drive does as shipped, and after what docs/commissioning.md has the user give ------------------------
 TEST(DriveShippedProfiles, NoDriveHasAQuickStopThatMayTripIt)
 {
   for (const std::string& name : knownProfiles(profileDirectory()))
@@ -238,7 +238,7 @@ TEST(DriveShippedProfiles, AVfs11DoesNothingAsShipped)
   EXPECT_EQ(bare.missingFor("forward"), "frequency_scale, run_forward, stop");
 }
 
-TEST(DriveShippedProfiles, AVfs11RunsAfterWhatTheReadmeConfirms)
+TEST(DriveShippedProfiles, AVfs11RunsAfterWhatCommissioningConfirms)
 {
   const Drive drive = shipped("toshiba_vfs11", changes({ "status_bits", "frequency_scale", "stop", "run_forward",
                                                          "run_reverse", "fault_reset", "current_base" }));
@@ -261,7 +261,7 @@ TEST(DriveShippedProfiles, A7200MaOnlyStopsAsShipped)
                                                                   "frequency_scale", "monitor_base" }));
 }
 
-TEST(DriveShippedProfiles, A7200MaRunsAfterWhatTheReadmeGives)
+TEST(DriveShippedProfiles, A7200MaRunsAfterWhatCommissioningGives)
 {
   const Drive drive = shipped("teco_7200ma", changes({ "run_forward", "fault_reset", "frequency_scale" },
                                                      "reverse_word: 2\nmonitor_base: 0x0020\n"

@@ -29,6 +29,14 @@ def table(text, heading):
     return rows[2:]
 
 
+def anchors(path):
+    """What a link may name in a Markdown file: its headings, as GitHub turns them into anchors, and anchors of its own."""
+    text = read(path)
+    headings = re.findall(r'^#+ (.*)$', text, re.MULTILINE)
+    return {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-') for heading in headings} | set(
+        re.findall(r'<a id="([\w-]+)"></a>', text))
+
+
 def members(source, struct):
     """Members of a C++ struct: name to (type, default)."""
     body = re.search(r'struct %s\n\{\n(.*?)\n\};' % struct, source, re.DOTALL).group(1)
@@ -214,17 +222,14 @@ class Documents(unittest.TestCase):
     def testLinksLeadSomewhere(self):
         for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')) + [
                 os.path.join(ROOT, 'findings', 'README.md')]:
-            text = read(path)
-            anchors = {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
-                       for heading in re.findall(r'^#+ (.*)$', text, re.MULTILINE)}
-            for target in re.findall(r'\]\(([^)]+)\)', text):
+            for target in re.findall(r'\]\(([^)]+)\)', read(path)):
                 if target.startswith('http'):
                     continue
                 name, _, anchor = target.partition('#')
-                if name:
-                    self.assertTrue(os.path.exists(os.path.join(os.path.dirname(path), name)), '%s: %s' % (path, target))
-                else:
-                    self.assertIn(anchor, anchors, '%s: %s' % (path, target))
+                aim = os.path.join(os.path.dirname(path), name) if name else path
+                self.assertTrue(os.path.exists(aim), '%s: %s' % (path, target))
+                if anchor:
+                    self.assertIn(anchor, anchors(aim), '%s: %s' % (path, target))
 
     def testThePictureShowsWhatItsSourceSays(self):
         picture = read('docs', 'data_flow.svg')

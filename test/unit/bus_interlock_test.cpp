@@ -622,7 +622,7 @@ TEST(Interlock, streamsThatGoOnStayRefusedHoweverManyTheyAre)
   EXPECT_EQ(belt.command(5600, publisher("/newer")), Permission::Granted);
 }
 
-// --- near zero (8.5) -------------------------------------------------------------------------------------------------
+// --- near zero (rule 8.5) --------------------------------------------------------------------------------------------
 
 TEST(Interlock, aVelocityNearZeroDoesNotUnlock)
 {

@@ -703,7 +703,7 @@ TEST(Scheduler, framesOfAUnitStayTogetherButForOthersThatWait)
   line.push(1, CommandKind::Velocity, { 0 }, 3);
   line.push(2, CommandKind::Velocity, { 1 }, 3);
   line.push(3, CommandKind::ReadParameter, { 1 });
-  // Neither 0 nor 1 goes on while the other one waits (8.1); no refresh and no long job comes between.
+  // Neither 0 nor 1 goes on while the other one waits (rule 8.1); no refresh and no long job comes between.
   const Names names = line.exchanges(5);
   EXPECT_THAT(names, ElementsAre("C1", "C2", "C1", "C2", "C1"));
 }

@@ -391,7 +391,7 @@ void Checker::noteHeard(TimePoint end, std::size_t index)
 /// told from its late reply.
 void Checker::noteImitation(TimePoint now, const simulation::FrameRecord& frame, std::size_t index)
 {
-  const auto bears = scene_.compoway || frame.bytes.empty() ? std::nullopt : inverterAt(scene_, frame.bytes.front());
+  const auto bears = bearerOf(scene_, frame.bytes);
   if (bears && *bears != index)
   {
     lanes_[*bears].imitated_at = now;

@@ -192,6 +192,11 @@ RequestFacts readModbus(const Scene& scene, const Bytes& frame)
   return facts;
 }
 
+unsigned compowayStation(const std::string& body)
+{
+  return static_cast<unsigned>(std::strtoul(body.substr(0, 2).c_str(), nullptr, 10));
+}
+
 /// CompoWay/F: I548, sections 2 and 3; the codes of service 30 05 are those of the scene.
 RequestFacts readCompoway(const Scene& scene, const Bytes& frame)
 {
@@ -204,9 +209,7 @@ RequestFacts readCompoway(const Scene& scene, const Bytes& frame)
   }
   facts.broadcast = body.substr(0, 2) == "XX";
   facts.expects_reply = !facts.broadcast;
-  facts.inverter = facts.broadcast
-                       ? std::optional<std::size_t>()
-                       : find(scene, static_cast<unsigned>(std::strtoul(body.substr(0, 2).c_str(), nullptr, 10)));
+  facts.inverter = facts.broadcast ? std::optional<std::size_t>() : find(scene, compowayStation(body));
   // Node, subaddress and SID take five characters.
   const std::string service = body.substr(5, 4);
   const std::string text = body.substr(9);
@@ -289,6 +292,16 @@ ReplyKind readCompowayReply(const Bytes& request, const Bytes& reply, unsigned& 
 std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station)
 {
   return find(scene, station);
+}
+
+std::optional<std::size_t> bearerOf(const Scene& scene, const Bytes& reply)
+{
+  if (!scene.compoway)
+  {
+    return reply.empty() ? std::nullopt : find(scene, reply.front());
+  }
+  const auto found = simulation::findCompowayFrame(reply);
+  return found ? find(scene, compowayStation(simulation::compowayBody(*found))) : std::nullopt;
 }
 
 RequestFacts readRequest(const Scene& scene, const Bytes& frame)

@@ -47,6 +47,9 @@ struct RequestFacts
 /// Whose station this is.
 std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station);
 
+/// The inverter whose station a reply bears.
+std::optional<std::size_t> bearerOf(const Scene& scene, const simulation::Bytes& reply);
+
 RequestFacts readRequest(const Scene& scene, const simulation::Bytes& frame);
 
 enum class ReplyKind

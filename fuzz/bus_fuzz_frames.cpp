@@ -28,6 +28,7 @@ constexpr unsigned EXCEPTION_BIT = 0x80;
 
 // Wire addresses. MX2 and RX: I585, I578 (printed number less one).
 constexpr unsigned COIL_RUN = 0x0000;
+constexpr unsigned COIL_DIRECTION = 0x0001;
 constexpr unsigned COIL_RESET = 0x0003;
 constexpr unsigned F001 = 0x0000;
 constexpr unsigned D001 = 0x1000;
@@ -76,6 +77,7 @@ void readHitachi(const Bytes& frame, unsigned function, RequestFacts& facts)
   {
     facts.run = facts.address == COIL_RUN && value == 0xFF00;
     facts.stop = facts.address == COIL_RUN && value != 0xFF00;
+    facts.direction = facts.address == COIL_DIRECTION;
     facts.reset = facts.address == COIL_RESET && value == 0xFF00;
   }
   else if (function == WRITE_REGISTERS && facts.address == F001)

@@ -24,6 +24,8 @@ struct RequestFacts
   bool stop = false;   ///< takes RUN off
   bool reset = false;  ///< clears a trip
   bool reverse = false;
+  /// Writes the direction alone.
+  bool direction = false;
   /// Command words and a read in one frame (17H).
   bool with_read = false;
   bool loopback = false;
@@ -40,7 +42,7 @@ struct RequestFacts
   /// Part of a velocity or a stop: what moves a motor or takes RUN off.
   bool commands() const
   {
-    return run || stop || set_hertz.has_value();
+    return run || stop || direction || set_hertz.has_value();
   }
 };
 

@@ -1387,6 +1387,21 @@ TEST(Scheduler, lowestClassGetsEveryEighthExchangeUnderAFloodOfCommands)
   EXPECT_THAT(longestWithout('B', names), Le(7U));
 }
 
+TEST(Scheduler, lowestClassGetsItsTurnWhileDeadlinesAndALongJobNeverEnd)
+{
+  VirtualLine line(4);
+  line.reads_per_refresh = 4;
+  line.views[3].background = true;
+  for (std::size_t index = 0; index < 3; ++index)
+  {
+    line.serve_within[index] = Ms(120);
+    line.views[index].serve_by = at(0);
+  }
+  line.push(1, CommandKind::ReadFaults, { 3 }, 1000);
+  // Each of the supervised may begin a refresh of its own before, and go on with it once.
+  EXPECT_THAT(longestWithout('B', line.exchanges(300)), Le(7U + 2 * 3U));
+}
+
 TEST(Scheduler, lowestClassTakesTurnsBetweenInverters)
 {
   VirtualLine line(3);

@@ -391,7 +391,7 @@ void Checker::noteHeard(TimePoint end, std::size_t index)
 /// told from its late reply.
 void Checker::noteImitation(TimePoint now, const simulation::FrameRecord& frame, std::size_t index)
 {
-  const auto bears = scene_.compoway || frame.bytes.empty() ? std::nullopt : inverterAt(scene_, frame.bytes.front());
+  const auto bears = bearerOf(scene_, frame.bytes);
   if (bears && *bears != index)
   {
     lanes_[*bears].imitated_at = now;
@@ -547,8 +547,9 @@ void Checker::checkBackground(TimePoint now)
   {
     Lane& lane = lanes_[index];
     supervised += scene_.inverters[index].drive_timeout > 0.0 ? 1 : 0;
-    // After a lost exchange what is alike waits for a while (rule 3.9).
-    const bool undisturbed = lane.lost_at == TimePoint() || now - lane.lost_at > seconds(3.0);
+    // After a lost exchange what is alike waits for a while (rule 3.9), and nobody asks a drive that is deaf after its reset.
+    const bool undisturbed =
+        (lane.lost_at == TimePoint() || now - lane.lost_at > seconds(3.0)) && now > lane.deaf_until;
     const bool unread = undisturbed && unreadSettings(index);
     waiting = waiting || (lane.first_time && lane.online && unread);
   }

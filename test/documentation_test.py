@@ -63,8 +63,8 @@ def without_code(text):
 
 
 def anchors(text):
-    """The anchors that GitHub gives to the headings of a page."""
-    found, counts = set(), collections.Counter()
+    """What a link may name in a page: its headings, as GitHub turns them into anchors, and anchors of its own."""
+    found, counts = set(re.findall(r'<a id="([\w-]+)"></a>', text)), collections.Counter()
     for heading in re.findall(r'^#+ (.*)$', without_code(text), re.MULTILINE):
         slug = re.sub(r'[^\w\- ]', '', heading.strip().lower()).replace(' ', '-')
         found.add('%s-%d' % (slug, counts[slug]) if counts[slug] else slug)
@@ -97,7 +97,7 @@ class Readme(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.readme = read('README.md')
-        cls.scan_list = read('docs', 'scan_list.md')
+        cls.scan_list = read('docs', 'scan_list_files.md')
         cls.configuration = code('src/bus/configuration*.cpp')
         header = read('include/inverter_bus/bus/configuration.h')
         cls.bus = members(header, 'BusConfig')

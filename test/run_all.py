@@ -201,6 +201,7 @@ def lint_programs(build):
                    '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
+    yield python_program('lint', 'test/contract_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])
 
 

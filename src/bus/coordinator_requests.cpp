@@ -47,7 +47,7 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = judged.text.empty() ? errorText(judged.error_id) : judged.text;
     return judged.error_id;
   }
-  // That it is the wrong drive says more than that it tells no status (the order of section 2).
+  // That it is the wrong drive says more than that it tells no status (the order of ids: contract, section 2).
   if (inverter.offline() && inverter.settings.identity() != Identity::Wrong)
   {
     judged.error_id = ERROR_OFFLINE;

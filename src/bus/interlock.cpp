@@ -36,10 +36,12 @@ void Interlock::lock()
 void Interlock::online(TimePoint now)
 {
   offline_ = false;
-  if (!stop_pending_ && !neutral_since_)
+  // At start-up the silence counts from the first status, also where a stop was confirmed before it.
+  if (!stop_pending_ && (!neutral_since_ || !seen_))
   {
     neutral_since_ = now;
   }
+  seen_ = true;
 }
 
 void Interlock::offline()

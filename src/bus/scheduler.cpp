@@ -210,6 +210,8 @@ std::optional<Pick> Scheduler::goOnWithRefresh(TimePoint now, const std::vector<
   {
     avoided_ = last_inverter_;
     auto other = deadlinesMayGo(views) ? pickDeadline(now, views) : std::nullopt;
+    // One refresh of a deadline may begin before the last one is over, for ever.
+    other = !other && backgroundIsDue(now, views) ? backgroundInTurn(now, views) : other;
     const auto command = other ? std::nullopt : pickCommand(now, false);
     // Where deadlines never end, these are the only turns that commands and the refreshes of the others have.
     other = command && commandsGiveWay(now, views) ? pickRefresh(now, views) : other;

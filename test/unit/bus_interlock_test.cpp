@@ -124,6 +124,16 @@ TEST(Interlock, streamThatGoesOnAcrossTheStartIsRefusedForEver)
   EXPECT_TRUE(belt.interlock.locked(at(60000)));
 }
 
+TEST(Interlock, silenceAtStartCountsFromTheFirstStatusAlsoAfterAStop)
+{
+  Guarded guarded;
+  guarded.interlock.stopRequested();
+  guarded.interlock.stopConfirmed(at(100));
+  guarded.interlock.online(at(1000));
+  EXPECT_EQ(guarded.interlock.judge(at(1499), publisher()), Permission::Locked);
+  EXPECT_EQ(guarded.interlock.judge(at(1500), publisher()), Permission::Granted);
+}
+
 TEST(Interlock, zeroUnlocksAtStart)
 {
   Guarded belt;
@@ -622,7 +632,7 @@ TEST(Interlock, streamsThatGoOnStayRefusedHoweverManyTheyAre)
   EXPECT_EQ(belt.command(5600, publisher("/newer")), Permission::Granted);
 }
 
-// --- near zero (8.5) -------------------------------------------------------------------------------------------------
+// --- near zero (rule 8.5) --------------------------------------------------------------------------------------------
 
 TEST(Interlock, aVelocityNearZeroDoesNotUnlock)
 {

@@ -703,7 +703,7 @@ TEST(Scheduler, framesOfAUnitStayTogetherButForOthersThatWait)
   line.push(1, CommandKind::Velocity, { 0 }, 3);
   line.push(2, CommandKind::Velocity, { 1 }, 3);
   line.push(3, CommandKind::ReadParameter, { 1 });
-  // Neither 0 nor 1 goes on while the other one waits (8.1); no refresh and no long job comes between.
+  // Neither 0 nor 1 goes on while the other one waits (rule 8.1); no refresh and no long job comes between.
   const Names names = line.exchanges(5);
   EXPECT_THAT(names, ElementsAre("C1", "C2", "C1", "C2", "C1"));
 }
@@ -1385,6 +1385,21 @@ TEST(Scheduler, lowestClassGetsEveryEighthExchangeUnderAFloodOfCommands)
     names.push_back(line.exchange());
   }
   EXPECT_THAT(longestWithout('B', names), Le(7U));
+}
+
+TEST(Scheduler, lowestClassGetsItsTurnWhileDeadlinesAndALongJobNeverEnd)
+{
+  VirtualLine line(4);
+  line.reads_per_refresh = 4;
+  line.views[3].background = true;
+  for (std::size_t index = 0; index < 3; ++index)
+  {
+    line.serve_within[index] = Ms(120);
+    line.views[index].serve_by = at(0);
+  }
+  line.push(1, CommandKind::ReadFaults, { 3 }, 1000);
+  // Each of the supervised may begin a refresh of its own before, and go on with it once.
+  EXPECT_THAT(longestWithout('B', line.exchanges(300)), Le(7U + 2 * 3U));
 }
 
 TEST(Scheduler, lowestClassTakesTurnsBetweenInverters)

@@ -174,7 +174,7 @@ TEST_P(ChangingStream, aDriveThatRefusesEveryFrequencyTakesNobodysTurn)
   EXPECT_NEAR(bus.motor("good", "reference"), last_velocity, 2.0);
 }
 
-// --- alive means data (8.15) -----------------------------------------------------------------------------------------
+// --- alive means data (rule 8.15) ------------------------------------------------------------------------------------
 
 /// What a drive does from a moment on, and how the node calls it.
 struct Ailment

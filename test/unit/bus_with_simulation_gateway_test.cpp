@@ -145,7 +145,7 @@ TEST_F(BehindAGateway, aDeadUnitStopsNobodyElse)
   }
 }
 
-/// It swallows a request now and then: nothing else is sent for gateway_timeout, which is longer than the 2 s of 8.15.
+/// It swallows a request now and then: nothing else is sent for gateway_timeout, which is longer than the 2 s of rule 8.15.
 TEST_F(BehindAGateway, oneRequestThatIsSwallowedStopsNobody)
 {
   start(twoDrives("gateway_timeout: 3.0\n"));

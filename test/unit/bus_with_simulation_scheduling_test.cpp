@@ -50,7 +50,7 @@ TEST(Scheduling, aGroupGoesBackToBackInNodeOrder)
       heads.push_back(head(request));
     }
   }
-  // Each of them waits while another one has its frame: they take turns (8.1), and nothing else comes between.
+  // Each of them waits while another one has its frame: they take turns (rule 8.1), and nothing else comes between.
   const std::vector<std::string> expected{ "01 10", "02 10", "03 10", "01 05", "02 05",
                                            "03 05", "01 05", "02 05", "03 05" };
   EXPECT_EQ(heads, expected);
@@ -205,7 +205,7 @@ TEST(Scheduling, commandsOfOneExchangeGoKindByKindInNodeOrder)
     }
   }
   // Frequency, direction and RUN of three that wait for each other go frame by frame. A parameter of 1 may go before the
-  // last frame of 3, which has just been refreshed: nobody gets two exchanges in a row while another one waits (8.1).
+  // last frame of 3, which has just been refreshed: nobody gets two exchanges in a row while another one waits (rule 8.1).
   const auto first_parameter = std::find(order.begin(), order.end(), "01 P");
   EXPECT_GE(first_parameter - order.begin(), 8);
   const auto velocities =

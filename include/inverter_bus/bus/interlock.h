@@ -113,6 +113,8 @@ private:
   bool stop_pending_ = false;
   bool faulted_ = false;
   bool offline_ = false;
+  /// A status was read since the start.
+  bool seen_ = false;
   std::optional<TimePoint> neutral_since_;
   std::optional<TimePoint> last_accepted_;
 };

@@ -24,7 +24,7 @@ public:
 
   // --- failures in a row ----------------------------------------------------------------------------------------------
   /// An exchange was lost, after its repeats; true: so many in a row that the inverter is offline. Lost \p write of command
-  /// words alone don't make it so (8.1): a read must be among them.
+  /// words alone don't make it so (contract, 8.1): a read must be among them.
   bool lost(bool write);
   /// A read of the run words was answered by an exception; counts like a lost exchange.
   bool refused();

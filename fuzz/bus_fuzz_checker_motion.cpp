@@ -114,7 +114,8 @@ void Checker::stopAsked(TimePoint now, std::optional<std::size_t> index)
     }
     Lane& lane = lanes_[one];
     const bool flood = lane.stops_in_a_row >= FLOOD_OF_STOPS && now - lane.stop_sent < seconds(FLOOD_PAUSE_S);
-    const bool counts = !lane.stopping && !lane.due && !flood;
+    // At shutdown each one is stopped anyway, in an order of its own.
+    const bool counts = !lane.stopping && !lane.due && !flood && !shutting_down_;
     if (!online(one))
     {
       // It is tried once at once, then it is the probe.

@@ -288,6 +288,11 @@ void Checker::endExchange(TimePoint now)
       unanswered_.push_back(now);
       lane.lost_at = now;
     }
+    if (facts_.set_hertz)
+    {
+      // Nobody knows which set-point it has now.
+      lane.set_answered.reset();
+    }
     if (facts_.commands())
     {
       lane.settled = false;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "inverter_bus/simulation/motor.h"
+#include "simulation/drives/motor.h"
 
 // The line and what is published. What may move stands in bus_fuzz_checker_motion.cpp.
 

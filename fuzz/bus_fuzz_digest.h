@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "inverter_bus/bus/coordinator.h"
+#include "bus/coordinator.h"
 #include "inverter_bus/bus/types.h"
 #include "inverter_bus/simulation/simulated_line.h"
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "inverter_bus/simulation/compoway_frame.h"
-#include "inverter_bus/simulation/modbus_frame.h"
+#include "simulation/compoway/compoway_frame.h"
+#include "simulation/modbus/modbus_frame.h"
 
 namespace inverter_bus
 {

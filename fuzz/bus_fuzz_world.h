@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "bus/bus_loop.h"
+#include "bus/coordinator.h"
 #include "bus_fuzz_checker.h"
 #include "bus_fuzz_digest.h"
-#include "inverter_bus/bus/bus_loop.h"
-#include "inverter_bus/bus/coordinator.h"
-#include "virtual_world.h"
+#include "support/virtual_world.h"
 
 namespace inverter_bus
 {

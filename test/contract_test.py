@@ -11,7 +11,7 @@ import yaml
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CONTRACT = os.path.join('docs', 'contract.md')
-CITING = ['src', 'include', 'fuzz', 'test', 'docs', 'msg', 'srv', 'README.md', 'CHANGELOG.rst', 'CMakeLists.txt', 'benchmark',
+CITING = ['src', 'include', 'fuzz', 'support', 'test', 'docs', 'msg', 'srv', 'README.md', 'CHANGELOG.rst', 'CMakeLists.txt', 'benchmark',
           'cmake', 'config', 'launch', 'scripts']
 
 # Rules of each numbered section. A new rule goes to the end: a number is never given to another rule.
@@ -183,7 +183,7 @@ class Code(unittest.TestCase):
         cls.block = re.search(r'### Parameters\n.*?```yaml\n(.*?)```', read(CONTRACT), re.DOTALL).group(1)
         cls.parameters = yaml.safe_load(cls.block)
         cls.planned = re.findall(r'^[ -]*(\w+):.*\(planned\)$', cls.block, re.MULTILINE)
-        cls.keys = read('src', 'bus', 'configuration_keys.cpp')
+        cls.keys = read('src', 'bus', 'configuration', 'configuration_keys.cpp')
 
     def listed(self, function):
         body = re.search(r'Keys& %s\(\)\n\{.*?Keys KEYS\{(.*?)\};' % function, self.keys, re.DOTALL).group(1)

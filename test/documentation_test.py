@@ -98,7 +98,7 @@ class Readme(unittest.TestCase):
     def setUpClass(cls):
         cls.readme = read('README.md')
         cls.scan_list = read('docs', 'scan_list_files.md')
-        cls.configuration = code('src/bus/configuration*.cpp')
+        cls.configuration = code('src/bus/configuration/*.cpp')
         header = read('include/inverter_bus/bus/configuration.h')
         cls.bus = members(header, 'BusConfig')
         cls.bus.update(members(read('include/inverter_bus/wire/serial_port.h'), 'SerialSettings'))
@@ -292,7 +292,7 @@ class Documents(unittest.TestCase):
         self.assertEqual(positions, sorted(positions))
 
     def testSafetyRulesNameTestsThatExist(self):
-        tests = code('test/unit/*.cpp') + code('test/integration/*.py') + code('test/*.py') + code('test/peers/*.py')
+        tests = code('test/unit/*/*.cpp') + code('test/system/*.cpp') + code('test/integration/*.py') + code('test/*.py') + code('test/peers/*.py')
         for name in re.findall(r'`(\w+)\.(\w+)`', read('docs', 'safety_rules.md')):
             suite, case = name
             self.assertRegex(tests, r'(TEST(_F|_P)?\(%s, %s\)|class %s\b)' % (suite, case, suite), name)

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/bus/coordinator.h"
+#include "bus/coordinator.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "inverter_bus/wire/shown_number.h"
+#include "wire/shown_number.h"
 
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.

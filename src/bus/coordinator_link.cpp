@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "inverter_bus/bus/coordinator.h"
-#include "inverter_bus/wire/shown_number.h"
+#include "bus/coordinator.h"
+#include "wire/shown_number.h"
 
 // The way to the drives: what a gateway still works on, connections that are closed by their other end, links that have gone
 // mute, telnet servers.

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include <algorithm>
 
-#include "inverter_bus/bus/coordinator.h"
+#include "bus/coordinator.h"
 
 // What follows from the end of an exchange.
 

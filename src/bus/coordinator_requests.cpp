@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "inverter_bus/bus/coordinator.h"
-#include "inverter_bus/wire/shown.h"
+#include "bus/coordinator.h"
+#include "wire/shown.h"
 
 // What users ask of the bus: velocities, stops and services.
 

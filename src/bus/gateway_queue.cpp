@@ -3,6 +3,7 @@
 #include "inverter_bus/bus/gateway_queue.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace inverter_bus
 {
@@ -37,7 +38,7 @@ void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverte
   {
     return;
   }
-  tick(now);
+  giveUp(now);
   Entry entry;
   entry.ticket = ticket;
   entry.inverter = inverter;
@@ -65,7 +66,7 @@ void GatewayQueue::lost(TimePoint now, std::uint64_t ticket)
   {
     entry->lost = true;
   }
-  tick(now);
+  giveUp(now);
 }
 
 std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std::uint64_t ticket)
@@ -80,7 +81,7 @@ std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std:
   const Late late{ entry->inverter, entry->risk, !entry->behind_another, entry->probe };
   if (late.alone)
   {
-    block_ = now - entry->sent_at;
+    block_ = std::min(now - entry->sent_at, settings_.timeout);
   }
   entries_.erase(entry);
   return late;
@@ -88,9 +89,10 @@ std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std:
 
 void GatewayQueue::connectionEnded(TimePoint now)
 {
-  tick(now);
+  giveUp(now);
   for (Entry& entry : entries_)
   {
+    noteCutShort(entry, now);
     entry.orphan = true;
   }
   // Only what may start a motor matters beyond the connection.
@@ -110,20 +112,46 @@ void GatewayQueue::noteUnanswered(const Entry& entry)
   }
 }
 
-std::optional<Duration> GatewayQueue::tick(TimePoint now)
+/// It was waited for until its connection ended: a gateway may say so that a station is silent.
+void GatewayQueue::noteCutShort(const Entry& entry, TimePoint now)
 {
-  std::optional<Duration> kept;
+  if (!entry.lost || entry.orphan)
+  {
+    return;
+  }
+  const Duration kept = std::min(now - entry.sent_at, wait());
+  noteKept(entry, kept);
+  // At least: it may have been ended for another reason.
+  block_ = entry.behind_another ? block_ : std::max(block_, kept);
+}
+
+void GatewayQueue::noteKept(const Entry& entry, Duration kept)
+{
+  if (entry.probe && !entry.orphan)
+  {
+    kept_ = std::max(kept_.value_or(Duration::zero()), kept);
+  }
+}
+
+void GatewayQueue::giveUp(TimePoint now)
+{
   for (auto entry = entries_.begin(); entry != entries_.end();)
   {
     const bool over = (entry->lost || entry->orphan) && givenUpAt(*entry) <= now;
     if (over)
     {
-      kept = entry->probe && !entry->orphan ? std::optional<Duration>(now - entry->sent_at) : kept;
+      // Not until now: who looks late has not been kept for so long.
+      noteKept(*entry, givenUpAt(*entry) - entry->sent_at);
       noteUnanswered(*entry);
     }
     entry = over ? entries_.erase(entry) : entry + 1;
   }
-  return kept;
+}
+
+std::optional<Duration> GatewayQueue::tick(TimePoint now)
+{
+  giveUp(now);
+  return std::exchange(kept_, std::nullopt);
 }
 
 // --- what may go -----------------------------------------------------------------------------------------------------

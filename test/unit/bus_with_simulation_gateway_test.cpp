@@ -257,6 +257,26 @@ TEST_F(BehindAGateway, aCloseInPlaceOfTheAnswerOfADeadUnitStopsNobodyElse)
   EXPECT_FALSE(bus_->status(A).locked);
 }
 
+/// It hangs up only when our own time-out has long passed: that is the block which the probes have to pay.
+TEST_F(BehindAGateway, aLateCloseInPlaceOfTheAnswerIsPaidByTheProbes)
+{
+  start();
+  bus_->gateway().behaviour.close_on_silence = true;
+  bus_->gateway().behaviour.silence = 1.0;
+  turn(A, "a");
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B); }));
+  bus_->run(5.0);
+  const double before = bus_->gateway().blocked();
+  for (int second = 0; second < 100; ++second)
+  {
+    bus_->run(1.0);
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << second;
+  }
+  EXPECT_LE(bus_->gateway().blocked() - before, 0.05 * 100.0 + 1.0);
+  EXPECT_GT(bus_->gateway().blocked() - before, 2.0) << "it is looked for all the same";
+}
+
 TEST_F(BehindAGateway, aStopThatClosesEachConnectionStopsNobodyElse)
 {
   start();

@@ -69,8 +69,8 @@ public:
   std::optional<Late> answeredLate(TimePoint now, std::uint64_t ticket);
   /// The connection has ended: no answer comes any more, but what was under way may still be carried out.
   void connectionEnded(TimePoint now);
-  /// Time has passed: what was waited for long enough is not owed any more. Returns the time that the gateway was kept for
-  /// nothing by a probe that was given up now.
+  /// Time has passed: what was waited for long enough is not owed any more. Returns how long a probe has kept the gateway
+  /// that was given up since the last call, whatever has shown it; the longest one of several, which ran side by side.
   std::optional<Duration> tick(TimePoint now);
 
   // --- what may go ----------------------------------------------------------------------------------------------------
@@ -115,12 +115,17 @@ private:
   TimePoint givenUpAt(const Entry& entry) const;
   bool owed(const Entry& entry, TimePoint now) const;
   std::vector<Entry>::iterator find(std::uint64_t ticket);
+  void giveUp(TimePoint now);
+  void noteCutShort(const Entry& entry, TimePoint now);
+  void noteKept(const Entry& entry, Duration kept);
   void noteUnanswered(const Entry& entry);
 
   Settings settings_;
   std::vector<Entry> entries_;
   Duration block_{ 0 };
   Duration longest_reply_{ 0 };
+  /// By probes that were given up since the last tick().
+  std::optional<Duration> kept_;
   /// Lost requests in a row that were not answered within `gateway_timeout`.
   unsigned unanswered_ = 0;
 };

@@ -35,8 +35,12 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
     case Purpose::Broadcast:
       return GatewayRisk::Stop;
     case Purpose::Velocity:
-      // What was meant to stop is no danger, whenever it is carried out.
-      return current.resync || !current.moves ? GatewayRisk::None : GatewayRisk::Motion;
+      if (current.resync)
+      {
+        return GatewayRisk::None;
+      }
+      // A 0 is a stop, and its frame the one that may be in the gateway (contract, 8 and 8.8).
+      return current.moves ? GatewayRisk::Motion : GatewayRisk::Stop;
     case Purpose::Refresh:
     case Purpose::KeepAlive:
     case Purpose::Setting:

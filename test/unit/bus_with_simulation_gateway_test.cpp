@@ -90,6 +90,7 @@ protected:
     return bus_->hasStatus(index) && !bus_->status(index).communication_error;
   }
 
+  using Box = VirtualBus::Box;
   std::unique_ptr<VirtualBus> bus_;
 };
 
@@ -408,6 +409,52 @@ TEST_F(BehindAGateway, aZeroAfterALateRunInsistsLikeAStop)
   bus_->run(10.0);
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
   EXPECT_FALSE(bus_->status(A).stop_active);
+}
+
+/// The RUN-off frame of A (coil 0000 on the wire) that the gateway has not answered is the one stop of A that it may hold.
+TEST_F(BehindAGateway, aStopWaitsForTheFrameOfAZeroOfTheSameInverter)
+{
+  start(twoDrives("gateway_timeout: 2.0\n"));
+  bus_->settleIn(20.0);
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  ASSERT_EQ(bus_->gateway().deepest(), 1U);
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0x00 };
+  bus_->gateway().behaviour.hold_time = 1.2;
+  bus_->command(A, 0.0);
+  // While the frame is on its way, and our own time-out has not passed.
+  Box box;
+  onHold([this, &box] { box = bus_->stop(A); });
+  bus_->clearFrames();
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return box != nullptr; }));
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_EQ(bus_->gateway().deepest(), 1U) << "a second stop frame of the same inverter waited behind the first one";
+  EXPECT_TRUE(bus_->wait(box).success);
+  EXPECT_LE(bus_->count("01 05 00 00 00"), 2U);
+}
+
+TEST_F(BehindAGateway, aZeroWaitsForTheFrameOfAStopOfTheSameInverter)
+{
+  start(twoDrives("gateway_timeout: 2.0\n"));
+  bus_->settleIn(20.0);
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  ASSERT_EQ(bus_->gateway().deepest(), 1U);
+  // The gateway is busy with a read of B, so that the 0 goes as a stop: two requests, and no third.
+  bus_->gateway().behaviour.hold = { 0x02 };
+  bus_->gateway().behaviour.hold_time = 1.2;
+  onHold([this] { bus_->at(0.5, [this] { bus_->command(A, 0.0); }); });
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->gateway().deepest() == 2U; })) << "the stop of the 0";
+  bus_->run(0.35);
+  ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0);
+  // Taken back by a velocity, and asked for anew.
+  EXPECT_EQ(bus_->command(A, 25.0), 0U);
+  EXPECT_EQ(bus_->command(A, 0.0), 0U);
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_EQ(bus_->gateway().deepest(), 2U);
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return !bus_->status(A).stop_active; }));
+  bus_->run(5.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
 }
 
 TEST_F(BehindAGateway, aRunThatIsCarriedOutAfterItsConnectionHasEndedIsStopped)

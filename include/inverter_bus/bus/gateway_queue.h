@@ -21,7 +21,7 @@ enum class GatewayRisk
   None,
   /// The refresh of a drive whose own time-out is near, which goes in spite of an older request.
   Refresh,
-  /// A frame of a stop.
+  /// A frame of a stop, or of a velocity of 0 or near it, which is one, too.
   Stop,
   /// May set RUN or raise the frequency.
   Motion

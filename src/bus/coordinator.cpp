@@ -243,7 +243,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
   }
   for (int attempt = 0; attempt < MOST_EMPTY_PICKS; ++attempt)
   {
-    std::optional<Current> current = composeBroadcast();
+    std::optional<Current> current = composeBroadcast(now);
     if (!current)
     {
       const Pick chosen = pick(now);
@@ -270,7 +270,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
   return std::nullopt;
 }
 
-std::optional<Coordinator::Current> Coordinator::composeBroadcast()
+std::optional<Coordinator::Current> Coordinator::composeBroadcast(TimePoint now)
 {
   // Who stops all again and again must not keep the single stops from being sent and confirmed.
   const bool again = broadcast_last_;
@@ -279,6 +279,14 @@ std::optional<Coordinator::Current> Coordinator::composeBroadcast()
   {
     return std::nullopt;
   }
+  const bool kept = !gateway_.free(now);
+  if (kept && broadcast_waits_)
+  {
+    // One is in the gateway already (contract, 8.8), and each inverter's own stop goes all the same.
+    broadcast_due_ = false;
+    return std::nullopt;
+  }
+  broadcast_waits_ = kept;
   broadcast_due_ = false;
   broadcast_last_ = true;
   const Inverter& any = *inverters_.front();

@@ -116,6 +116,7 @@ Gate Coordinator::gate(TimePoint now)
   tellOfTheGateway();
   gate.stops_only = !gateway_.free(now);
   gate.until = gateway_.freeAt(now);
+  broadcast_waits_ = broadcast_waits_ && gate.stops_only;
   gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {
     const auto own = inverter->settings.driveTimeout();
     return own && !inverter->offline() && inverter->mayRun() && *own < gateway_.block();

@@ -457,6 +457,31 @@ TEST_F(BehindAGateway, aZeroWaitsForTheFrameOfAStopOfTheSameInverter)
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
 }
 
+TEST_F(BehindAGateway, stopsOfAllAgainAndAgainDoNotPileUpInIt)
+{
+  start();
+  turn(A, "a");
+  bus_->gateway().behaviour.hold = { 0x02 };
+  bus_->gateway().behaviour.hold_time = 2.0;
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->gateway().held() > 0; }));
+  bus_->clearFrames();
+  for (int tenth = 0; tenth < 15; ++tenth)
+  {
+    bus_->stop(std::nullopt);
+    bus_->run(0.1);
+  }
+  EXPECT_LE(bus_->gateway().deepest(), 4U) << "what it holds, one stop of all, and one of each";
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_EQ(bus_->count("00 "), 1U);
+  EXPECT_TRUE(bus_->runUntil(5.0, [&] { return !bus_->status(A).stop_active && !bus_->status(B).stop_active; }));
+  // Kept busy once more: the next one goes again.
+  bus_->gateway().behaviour.hold = { 0x02 };
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->gateway().held() > 1; }));
+  bus_->stop(std::nullopt);
+  bus_->run(3.0);
+  EXPECT_EQ(bus_->count("00 "), 2U);
+}
+
 TEST_F(BehindAGateway, aRunThatIsCarriedOutAfterItsConnectionHasEndedIsStopped)
 {
   start();

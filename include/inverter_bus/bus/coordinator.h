@@ -242,7 +242,7 @@ private:
   void expireJobs(TimePoint now);
   void publishSlowly(TimePoint now);
   std::vector<InverterView> views(TimePoint now) const;
-  std::optional<Current> composeBroadcast();
+  std::optional<Current> composeBroadcast(TimePoint now);
   bool releaseDue(const Inverter& inverter) const;
   TimePoint nextStop(TimePoint now) const;
   void noteStopLatency(Duration latency);
@@ -357,6 +357,8 @@ private:
   bool broadcast_due_ = false;
   /// The last exchange was one.
   bool broadcast_last_ = false;
+  /// The last one went into a gateway that was kept busy.
+  bool broadcast_waits_ = false;
   TimePoint broadcast_requested_;
 
   Outputs outputs_;

@@ -687,6 +687,7 @@ void Coordinator::sent(TimePoint now)
   }
   if (current_->purpose == Purpose::StopFrame && !current_->resync)
   {
+    tellOfCostlyStop(inverter);
     const auto latency = inverter.stop.sent(now);
     // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port
     // that was gone, is no measure of the scheduler's latency.

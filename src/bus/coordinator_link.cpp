@@ -117,11 +117,39 @@ Gate Coordinator::gate(TimePoint now)
   gate.stops_only = !gateway_.free(now);
   gate.until = gateway_.freeAt(now);
   broadcast_waits_ = broadcast_waits_ && gate.stops_only;
-  gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {
-    const auto own = inverter->settings.driveTimeout();
-    return own && !inverter->offline() && inverter->mayRun() && *own < gateway_.block();
-  });
+  gate.bare_probes = endangered() == nullptr;
   return gate;
+}
+
+/// The running inverter with the shortest time-out of its own, if a silent station keeps the gateway for longer than that.
+const Inverter* Coordinator::endangered() const
+{
+  const Inverter* first = nullptr;
+  Duration shortest = gateway_.block();
+  for (const auto& inverter : inverters_)
+  {
+    const auto own = inverter->settings.driveTimeout();
+    if (own && *own < shortest && !inverter->offline() && inverter->mayRun())
+    {
+      first = inverter.get();
+      shortest = *own;
+    }
+  }
+  return first;
+}
+
+/// Contract, 8.8: a stop of an inverter that may run goes in spite of what that does to its neighbours, with one WARN.
+void Coordinator::tellOfCostlyStop(Inverter& inverter)
+{
+  const Inverter* const neighbour = inverter.silent() && !shutting_down_ ? endangered() : nullptr;
+  if (neighbour != nullptr && inverter.stop.takeCostly())
+  {
+    const std::string& name = neighbour->config.name;
+    log(Level::Warn, inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
+                         wire::shownDuration(gateway_.block()) + ", longer than the time-out of " + name +
+                         " itself, which runs (" + wire::shownDuration(*neighbour->settings.driveTimeout()) +
+                         "): " + name + " may trip or stop by that; shorten the gateway's time-out");
+  }
 }
 
 /// The time that a probe takes from everybody else, with its silences; a refusal takes it too.

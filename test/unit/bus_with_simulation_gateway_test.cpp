@@ -17,6 +17,7 @@ namespace inverter_bus
 {
 namespace
 {
+using testing::AllOf;
 using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -615,6 +616,72 @@ TEST_F(BehindAGateway, nothingIsRepeatedThatAClosedConnectionMayHaveCarriedOut)
   EXPECT_EQ(answer.error_id, wire::ERROR_TIMEOUT);
   bus_->run(3.0);
   EXPECT_EQ(bus_->count("01 10 11 02"), 1U);
+}
+
+/// A has a communication time-out of 0.8 s (which it only shows), and a silent station keeps the gateway for 1.5 s.
+class BesideAShortTimeOut : public BehindAGateway
+{
+protected:
+  void SetUp() override
+  {
+    start(twoDrives("gateway_timeout: 2.0\n") + "simulation:\n  a: {parameters: {C077: 0.8, C076: 2}}\n");
+    bus_->gateway().behaviour.silence = 1.5;
+  }
+
+  std::size_t warnings() const
+  {
+    const auto& log = bus_->log();
+    return static_cast<std::size_t>(std::count_if(log.begin(), log.end(), [](const bus::Finding& line) {
+      return line.level == bus::Level::Warn && line.text.find("each try of its stop") != std::string::npos;
+    }));
+  }
+
+  void loseB()
+  {
+    bus_->world("b offline");
+    ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B); }));
+  }
+};
+
+TEST_F(BesideAShortTimeOut, nobodyIsProbedWhileItRuns)
+{
+  turn(A, "a");
+  loseB();
+  bus_->run(10.0);
+  const double before = bus_->gateway().blocked();
+  bus_->run(60.0);
+  EXPECT_EQ(bus_->gateway().blocked(), before);
+  EXPECT_EQ(warnings(), 0U) << "no stop is pending";
+  bus_->wait(bus_->stop(A));
+  bus_->run(60.0);
+  EXPECT_GT(bus_->gateway().blocked(), before) << "at rest nothing is risked";
+}
+
+TEST_F(BesideAShortTimeOut, theStopOfAnOfflineInverterGoesAndIsWarnedOfOnce)
+{
+  bus_->settleIn(20.0);
+  bus_->stream(B, 20.0, 0.1, 300.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  turn(A, "a");
+  loseB();
+  EXPECT_TRUE(bus_->status(B).stop_active) << "it may run";
+  bus_->clearFrames();
+  bus_->run(120.0);
+  EXPECT_GE(bus_->count("02 05 00 00 00"), 3U) << "at the paid rate";
+  EXPECT_LE(bus_->count("02 05 00 00 00"), 8U);
+  EXPECT_EQ(warnings(), 1U);
+  EXPECT_THAT(bus_->logTexts(),
+              Contains(AllOf(HasSubstr("b: offline, but it may run"), HasSubstr("keeps the gateway for 1.5"),
+                             HasSubstr("time-out of a itself"), HasSubstr("800 ms"))));
+  bus_->world("b online");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return online(B) && !bus_->status(B).stop_active; }));
+  EXPECT_EQ(bus_->motor("b", "run_coil"), 0.0);
+  // Started and away again: that is another stop.
+  bus_->command(B, 0.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  loseB();
+  bus_->run(60.0);
+  EXPECT_EQ(warnings(), 2U);
 }
 
 TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)

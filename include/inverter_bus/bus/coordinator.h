@@ -216,6 +216,8 @@ private:
   void noteLink(const wire::Reply& reply);
   void othersFirst(TimePoint free_at, Inverter& inverter);
   Gate gate(TimePoint now);
+  const Inverter* endangered() const;
+  void tellOfCostlyStop(Inverter& inverter);
   void tellOfTheGateway();
   Duration probePrice(const Current& current, const wire::Reply& reply) const;
   TimePoint stopNotBefore(TimePoint now, const Inverter& inverter) const;

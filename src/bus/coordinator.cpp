@@ -16,7 +16,6 @@ namespace bus
 {
 namespace
 {
-constexpr double PROBE_SHARE = 0.05;
 // Contract, rule 3.7: an inverter is found again within 3 s; with a little margin.
 constexpr double PROBE_ROUND_S = 2.7;
 constexpr double SHORTEST_PROBE_TIMEOUT_S = 0.015;
@@ -68,7 +67,6 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   settings.inverters = inverters_.size();
   settings.interval = seconds(configuration.bus.interval);
   settings.idle_divisor = static_cast<unsigned>(configuration.bus.idle_divisor);
-  settings.probe_share = PROBE_SHARE;
   scheduler_ = std::make_unique<Scheduler>(settings);
   last_published_.resize(inverters_.size());
   attempts_at_open_.resize(inverters_.size(), 0);

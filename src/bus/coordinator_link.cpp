@@ -64,7 +64,7 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   behind_another_ = !answered && gateway_.behindAnother(reply.ticket);
   if (answered)
   {
-    gateway_.answered(reply.finished_at, reply.ticket);
+    gateway_.answered(reply.finished_at, reply.ticket, reply.gateway_code != 0);
   }
   else
   {
@@ -205,8 +205,25 @@ Duration Coordinator::worstStop() const
   }
   const auto silent = std::count_if(inverters_.begin(), inverters_.end(),
                                     [](const auto& inverter) { return inverter->offline() || !inverter->known(); });
-  const Duration block = gateway_.block() > Duration::zero() ? gateway_.block() : gateway_.wait();
-  return wire + static_cast<int>(silent) * block;
+  return wire + static_cast<int>(silent) * gatewayBlock();
+}
+
+/// For how long a silent station keeps the gateway: as measured, or as configured until it is.
+Duration Coordinator::gatewayBlock() const
+{
+  return gateway_.block() > Duration::zero() ? gateway_.block() : gateway_.wait();
+}
+
+/// When an offline inverter that answers again is noticed at the latest.
+std::string Coordinator::returnText() const
+{
+  if (const Inverter* const neighbour = endangered())
+  {
+    return "not while " + neighbour->config.name + " runs, whose own time-out is shorter than the gateway is kept";
+  }
+  const auto offline =
+      std::count_if(inverters_.begin(), inverters_.end(), [](const auto& inverter) { return inverter->offline(); });
+  return wire::shownDuration(Budget::longestReturn(gatewayBlock(), static_cast<std::size_t>(offline)));
 }
 
 std::optional<Finding> Coordinator::gatewayFinding() const

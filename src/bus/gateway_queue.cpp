@@ -13,6 +13,8 @@ namespace
 {
 // Contract, 8.8: so many lost requests without any late answer, and the gateway is silent by nature.
 constexpr unsigned UNANSWERED_BY_NATURE = 3;
+// So many answers of the gateway's own in time, and its block has become so short.
+constexpr unsigned IN_TIME_BY_NATURE = 8;
 }  // namespace
 
 GatewayQueue::GatewayQueue(const Settings& settings) : settings_(settings)
@@ -49,14 +51,37 @@ void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverte
   entries_.push_back(entry);
 }
 
-void GatewayQueue::answered(TimePoint now, std::uint64_t ticket)
+void GatewayQueue::answered(TimePoint now, std::uint64_t ticket, bool by_gateway)
 {
   const auto entry = find(ticket);
   if (entry != entries_.end())
   {
-    longest_reply_ = std::max(longest_reply_, now - entry->sent_at);
+    const Duration took = now - entry->sent_at;
+    longest_reply_ = std::max(longest_reply_, took);
+    if (by_gateway && !entry->behind_another)
+    {
+      noteInTime(std::min(took, settings_.timeout));
+    }
     entries_.erase(entry);
   }
+}
+
+/// In time or not: so long is everybody kept waiting.
+void GatewayQueue::noteInTime(Duration took)
+{
+  longest_in_time_ = std::max(longest_in_time_, took);
+  if (++in_time_ >= IN_TIME_BY_NATURE)
+  {
+    noteBlock(longest_in_time_);
+  }
+  block_ = std::max(block_, took);
+}
+
+void GatewayQueue::noteBlock(Duration block)
+{
+  block_ = block;
+  in_time_ = 0;
+  longest_in_time_ = Duration::zero();
 }
 
 void GatewayQueue::lost(TimePoint now, std::uint64_t ticket)
@@ -81,7 +106,7 @@ std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std:
   const Late late{ entry->inverter, entry->risk, !entry->behind_another, entry->probe };
   if (late.alone)
   {
-    block_ = std::min(now - entry->sent_at, settings_.timeout);
+    noteBlock(std::min(now - entry->sent_at, settings_.timeout));
   }
   entries_.erase(entry);
   return late;
@@ -107,7 +132,7 @@ void GatewayQueue::noteUnanswered(const Entry& entry)
   if (entry.lost && !entry.orphan && !entry.behind_another)
   {
     // As long as it was waited for, not as long as the next one will be.
-    block_ = wait();
+    noteBlock(wait());
     unanswered_ = std::min(unanswered_ + 1, UNANSWERED_BY_NATURE);
   }
 }

@@ -79,6 +79,31 @@ TEST_F(AGatewayQueue, isFreeAsSoonAsTheLateAnswerHasCome)
   EXPECT_FALSE(queue_.answeredLate(at(1.2), ticket)) << "it is owed one answer only";
 }
 
+TEST_F(AGatewayQueue, isKeptByASilentStationAlsoWhenItSaysSoInTime)
+{
+  answer(0.0, 0.2, LIVE);
+  EXPECT_EQ(queue_.block(), Duration::zero()) << "a drive's answer";
+  queue_.sent(at(1.0), 100, DEAD, GatewayRisk::None);
+  queue_.answered(at(1.25), 100, true);
+  EXPECT_EQ(queue_.block(), seconds(0.25));
+  queue_.sent(at(2.0), 101, DEAD, GatewayRisk::None);
+  queue_.answered(at(2.01), 101, true);
+  EXPECT_EQ(queue_.block(), seconds(0.25)) << "it may know that from a moment ago";
+}
+
+TEST_F(AGatewayQueue, aTimeOutThatWasShortenedInItCountsAfterAWhile)
+{
+  queue_.answeredLate(at(2.2), lose(0.0, DEAD));
+  ASSERT_EQ(queue_.block(), seconds(2.2));
+  for (int probe = 0; probe < 8; ++probe)
+  {
+    EXPECT_EQ(queue_.block(), seconds(2.2)) << probe;
+    queue_.sent(at(10.0 + probe), 100, DEAD, GatewayRisk::None);
+    queue_.answered(at(10.1 + probe), 100, true);
+  }
+  EXPECT_EQ(queue_.block(), seconds(10.1) - seconds(10.0));
+}
+
 TEST_F(AGatewayQueue, letsOneStopFramePerInverterIn)
 {
   lose(0.0, DEAD);

@@ -224,6 +224,8 @@ private:
   void stopInsteadOfZeros(TimePoint now);
   bool zeroNeedsStop(TimePoint now, const Inverter& inverter) const;
   Duration worstStop() const;
+  Duration gatewayBlock() const;
+  std::string returnText() const;
   std::optional<Finding> gatewayFinding() const;
   std::optional<Finding> quirkFinding() const;
   std::vector<std::size_t> onlineInverters() const;

@@ -80,6 +80,7 @@ Coordinator::~Coordinator() = default;
 
 bool Coordinator::tick(TimePoint now)
 {
+  noteRunning(now);
   watchDeadMen(now);
   const bool lost_one = watchStatuses(now);
   for (const std::string& line : refusals_.takeLines(now))
@@ -90,6 +91,35 @@ bool Coordinator::tick(TimePoint now)
   finishStopCalls(now);
   publishSlowly(now);
   return lost_one;
+}
+
+/// Looks for a jump of time. Only who watches for answers of drives forgives it; dead men and locks go by the real time.
+void Coordinator::noteRunning(TimePoint now)
+{
+  const Duration frozen = freeze_.back(now);
+  if (frozen == Duration::zero() || !connected_)
+  {
+    return;
+  }
+  log(Level::Warn, "this node did not run for " + wire::shownDuration(frozen) +
+                       ": it was stopped, or its machine is overloaded; nothing was sent meanwhile, no stop either");
+  for (const auto& inverter : inverters_)
+  {
+    inverter->liveness.notWatching(now, frozen);
+  }
+  link_.notWatching(frozen);
+}
+
+/// With what the drives themselves have told of their wait.
+Duration Coordinator::longestExchange() const
+{
+  return budget_.longest_exchange + longestReplyDelay();
+}
+
+/// Since when an exchange has taken time from others: not while this node itself did not run.
+TimePoint Coordinator::countedFrom(const wire::Reply& reply) const
+{
+  return std::max(reply.sent_at, reply.finished_at - longestExchange());
 }
 
 void Coordinator::watchDeadMen(TimePoint now)
@@ -248,6 +278,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
       if (chosen.what == Pick::What::Nothing)
       {
         wake = std::max(earliestDeadMan(chosen.wake), now);
+        freeze_.backBy(wake);
         return std::nullopt;
       }
       current = compose(now, chosen);
@@ -255,6 +286,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
     if (current && !mustWait(now, *current) && makeSafe(now, *current))
     {
       current_ = current;
+      freeze_.backBy(now + longestExchange());
       Exchange exchange;
       exchange.request = current->request;
       if (current->request.broadcast)
@@ -265,6 +297,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
     }
   }
   wake = now + seconds(BUS_STATUS_SHORTEST_S);
+  freeze_.backBy(wake);
   return std::nullopt;
 }
 

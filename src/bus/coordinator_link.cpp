@@ -155,7 +155,7 @@ void Coordinator::tellOfCostlyStop(Inverter& inverter)
 /// The time that a probe takes from everybody else, with its silences; a refusal takes it too.
 Duration Coordinator::probePrice(const Current& current, const wire::Reply& reply) const
 {
-  const Duration own = reply.finished_at - reply.sent_at;
+  const Duration own = reply.finished_at - countedFrom(reply);
   const bool by_gateway = gateway_.active() && reply.gateway_code != 0;
   return std::max(by_gateway ? std::max(own, gateway_.block()) : own, line_.cost(current.request, Duration{ 0 }));
 }
@@ -428,8 +428,9 @@ void Coordinator::noteLink(const wire::Reply& reply)
   link_.answered();
 }
 
-bool Coordinator::renewalDue(TimePoint now) const
+bool Coordinator::renewalDue(TimePoint now)
 {
+  noteRunning(now);
   const bool serial = !configuration_.bus.gateway;
   const bool stop_under_way =
       serial && std::any_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {

@@ -14,6 +14,7 @@
 #include "inverter_bus/bus/budget.h"
 #include "inverter_bus/bus/bus.h"
 #include "inverter_bus/bus/connection_watch.h"
+#include "inverter_bus/bus/freeze_watch.h"
 #include "inverter_bus/bus/gateway_queue.h"
 #include "inverter_bus/bus/inverter.h"
 #include "inverter_bus/bus/jobs.h"
@@ -100,7 +101,7 @@ public:
   /// A connection that its other end closed is being opened again at once; motors run on.
   bool resuming() const;
   /// The link is mute and is to be opened anew (renewing(), then abandon and open).
-  bool renewalDue(TimePoint now) const;
+  bool renewalDue(TimePoint now);
   void renewing(TimePoint now);
   /// It is opened anew for any other reason of ours: motors run on.
   void reopening(TimePoint now);
@@ -240,6 +241,9 @@ private:
   bool triedOverTelnet(const Inverter& inverter) const;
 
   // loop
+  void noteRunning(TimePoint now);
+  Duration longestExchange() const;
+  TimePoint countedFrom(const wire::Reply& reply) const;
   void watchDeadMen(TimePoint now);
   bool watchStatuses(TimePoint now);
   Duration refreshPeriod(const Inverter& inverter) const;
@@ -306,6 +310,7 @@ private:
   GatewayQueue gateway_;
   ConnectionWatch connection_;
   LinkWatch link_;
+  FreezeWatch freeze_;
   /// The exchange that has just ended was not answered, and says nothing: an older request was unanswered.
   bool behind_another_ = false;
   /// To whom the last request went, if it was not answered.

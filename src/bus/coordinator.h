@@ -14,6 +14,7 @@
 #include "bus/inverter/inverter.h"
 #include "bus/link/adapter_watch.h"
 #include "bus/link/connection_watch.h"
+#include "bus/link/freeze_watch.h"
 #include "bus/link/gateway_queue.h"
 #include "bus/link/link_watch.h"
 #include "bus/report/load_meter.h"
@@ -100,7 +101,7 @@ public:
   /// A connection that its other end closed is being opened again at once; motors run on.
   bool resuming() const;
   /// The link is mute and is to be opened anew (renewing(), then abandon and open).
-  bool renewalDue(TimePoint now) const;
+  bool renewalDue(TimePoint now);
   void renewing(TimePoint now);
   /// It is opened anew for any other reason of ours: motors run on.
   void reopening(TimePoint now);
@@ -216,12 +217,16 @@ private:
   void noteLink(const wire::Reply& reply);
   void othersFirst(TimePoint free_at, Inverter& inverter);
   Gate gate(TimePoint now);
+  const Inverter* endangered() const;
+  void tellOfCostlyStop(Inverter& inverter);
   void tellOfTheGateway();
   Duration probePrice(const Current& current, const wire::Reply& reply) const;
   TimePoint stopNotBefore(TimePoint now, const Inverter& inverter) const;
   void stopInsteadOfZeros(TimePoint now);
   bool zeroNeedsStop(TimePoint now, const Inverter& inverter) const;
   Duration worstStop() const;
+  Duration gatewayBlock() const;
+  std::string returnText() const;
   std::optional<Finding> gatewayFinding() const;
   std::optional<Finding> quirkFinding() const;
   std::vector<std::size_t> onlineInverters() const;
@@ -236,13 +241,16 @@ private:
   bool triedOverTelnet(const Inverter& inverter) const;
 
   // loop
+  void noteRunning(TimePoint now);
+  Duration longestExchange() const;
+  TimePoint countedFrom(const wire::Reply& reply) const;
   void watchDeadMen(TimePoint now);
   bool watchStatuses(TimePoint now);
   Duration refreshPeriod(const Inverter& inverter) const;
   void expireJobs(TimePoint now);
   void publishSlowly(TimePoint now);
   std::vector<InverterView> views(TimePoint now) const;
-  std::optional<Current> composeBroadcast();
+  std::optional<Current> composeBroadcast(TimePoint now);
   bool releaseDue(const Inverter& inverter) const;
   TimePoint nextStop(TimePoint now) const;
   void noteStopLatency(Duration latency);
@@ -302,6 +310,7 @@ private:
   GatewayQueue gateway_;
   ConnectionWatch connection_;
   LinkWatch link_;
+  FreezeWatch freeze_;
   /// The exchange that has just ended was not answered, and says nothing: an older request was unanswered.
   bool behind_another_ = false;
   /// To whom the last request went, if it was not answered.
@@ -357,6 +366,8 @@ private:
   bool broadcast_due_ = false;
   /// The last exchange was one.
   bool broadcast_last_ = false;
+  /// The last one went into a gateway that was kept busy.
+  bool broadcast_waits_ = false;
   TimePoint broadcast_requested_;
 
   Outputs outputs_;

@@ -38,6 +38,7 @@ bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 
 void Coordinator::done(const wire::Reply& reply)
 {
+  noteRunning(reply.finished_at);
   if (!current_)
   {
     return;
@@ -160,7 +161,7 @@ void Coordinator::finishExchange(const Current& current, const wire::Reply& repl
   {
     return;
   }
-  scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, isAnswered(reply));
+  scheduler_->done(current.pick, countedFrom(reply), reply.finished_at, more, isAnswered(reply));
   if (current.pick.probe && reply.outcome != wire::Outcome::Ok)
   {
     scheduler_->chargeProbe(reply.finished_at, probePrice(current, reply));

@@ -135,6 +135,7 @@ Report Coordinator::report(TimePoint now) const
   {
     report.values.emplace_back("gateway kept by a silent station",
                                rounded(toSeconds(gateway_.block()) * 1e3, "%.0f ms"));
+    report.values.emplace_back("offline inverter back within", returnText());
   }
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));

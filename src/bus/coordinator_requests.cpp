@@ -98,7 +98,11 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     }
   }
   judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
-  if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
+  if (judged.error_id == ERROR_LOCKED && inverter.interlock.isFaulted())
+  {
+    judged.text = lockedText(true);
+  }
+  else if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
   {
     judged.text =
         "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
@@ -199,8 +203,9 @@ void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, con
   {
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
-    one.text.empty() ? inverters_[target.first]->refuseForOther(error_id, reasons)
-                     : inverters_[target.first]->refuseCommand(error_id, one.text);
+    Inverter& inverter = *inverters_[target.first];
+    one.error_id == error_id ? inverter.refuseCommand(error_id, one.text)
+                             : inverter.refuseForOther(error_id, reasons, one.error_id, one.text);
     refusals_.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
                                                            : "the group was refused: " + reasons);
   }

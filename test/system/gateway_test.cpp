@@ -17,6 +17,7 @@ namespace inverter_bus
 {
 namespace
 {
+using testing::AllOf;
 using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -69,6 +70,19 @@ protected:
     }
   }
 
+  /// What /diagnostics shows of the bus.
+  std::string busValue(const std::string& name)
+  {
+    for (const auto& value : bus_->coordinator().report(bus_->now()).values)
+    {
+      if (value.first == name)
+      {
+        return value.second;
+      }
+    }
+    return "none";
+  }
+
   /// The gateway keeps the RUN of A (coil 0000 on the wire) for \p time [s] before it carries it out.
   void holdTheRun(double time)
   {
@@ -90,6 +104,7 @@ protected:
     return bus_->hasStatus(index) && !bus_->status(index).communication_error;
   }
 
+  using Box = VirtualBus::Box;
   std::unique_ptr<VirtualBus> bus_;
 };
 
@@ -257,6 +272,26 @@ TEST_F(BehindAGateway, aCloseInPlaceOfTheAnswerOfADeadUnitStopsNobodyElse)
   EXPECT_FALSE(bus_->status(A).locked);
 }
 
+/// It hangs up only when our own time-out has long passed: that is the block which the probes have to pay.
+TEST_F(BehindAGateway, aLateCloseInPlaceOfTheAnswerIsPaidByTheProbes)
+{
+  start();
+  bus_->gateway().behaviour.close_on_silence = true;
+  bus_->gateway().behaviour.silence = 1.0;
+  turn(A, "a");
+  bus_->world("b offline");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B); }));
+  bus_->run(5.0);
+  const double before = bus_->gateway().blocked();
+  for (int second = 0; second < 100; ++second)
+  {
+    bus_->run(1.0);
+    ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0) << second;
+  }
+  EXPECT_LE(bus_->gateway().blocked() - before, 0.05 * 100.0 + 1.0);
+  EXPECT_GT(bus_->gateway().blocked() - before, 2.0) << "it is looked for all the same";
+}
+
 TEST_F(BehindAGateway, aStopThatClosesEachConnectionStopsNobodyElse)
 {
   start();
@@ -371,7 +406,7 @@ TEST_F(BehindAGateway, aLateRunIsFollowedByAStopThatCounts)
   ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
   EXPECT_FALSE(box->has_value()) << "what went before the RUN was carried out confirms nothing";
   EXPECT_TRUE(bus_->wait(box).success);
-  EXPECT_GT(toSeconds(bus_->now() - called), 1.3);
+  EXPECT_GT(toSeconds(bus_->now() - called), 1.1) << "our time-out of 0.3 s had passed when it was called";
   bus_->run(10.0);
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
   EXPECT_FALSE(bus_->status(A).stop_active);
@@ -388,6 +423,77 @@ TEST_F(BehindAGateway, aZeroAfterALateRunInsistsLikeAStop)
   bus_->run(10.0);
   EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
   EXPECT_FALSE(bus_->status(A).stop_active);
+}
+
+/// The RUN-off frame of A (coil 0000 on the wire) that the gateway has not answered is the one stop of A that it may hold.
+TEST_F(BehindAGateway, aStopWaitsForTheFrameOfAZeroOfTheSameInverter)
+{
+  start(twoDrives("gateway_timeout: 2.0\n"));
+  bus_->settleIn(20.0);
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  ASSERT_EQ(bus_->gateway().deepest(), 1U);
+  bus_->gateway().behaviour.hold = { 0x01, 0x05, 0x00, 0x00, 0x00 };
+  bus_->gateway().behaviour.hold_time = 1.2;
+  bus_->command(A, 0.0);
+  // While the frame is on its way, and our own time-out has not passed.
+  Box box;
+  onHold([this, &box] { box = bus_->stop(A); });
+  bus_->clearFrames();
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return box != nullptr; }));
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_EQ(bus_->gateway().deepest(), 1U) << "a second stop frame of the same inverter waited behind the first one";
+  EXPECT_TRUE(bus_->wait(box).success);
+  EXPECT_LE(bus_->count("01 05 00 00 00"), 2U);
+}
+
+TEST_F(BehindAGateway, aZeroWaitsForTheFrameOfAStopOfTheSameInverter)
+{
+  start(twoDrives("gateway_timeout: 2.0\n"));
+  bus_->settleIn(20.0);
+  bus_->command(A, 20.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->status(A).monitor.running.value_or(false); }));
+  ASSERT_EQ(bus_->gateway().deepest(), 1U);
+  // The gateway is busy with a read of B, so that the 0 goes as a stop: two requests, and no third.
+  bus_->gateway().behaviour.hold = { 0x02 };
+  bus_->gateway().behaviour.hold_time = 1.2;
+  onHold([this] { bus_->at(0.5, [this] { bus_->command(A, 0.0); }); });
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->gateway().deepest() == 2U; })) << "the stop of the 0";
+  bus_->run(0.35);
+  ASSERT_EQ(bus_->motor("a", "run_coil"), 1.0);
+  // Taken back by a velocity, and asked for anew.
+  EXPECT_EQ(bus_->command(A, 25.0), 0U);
+  EXPECT_EQ(bus_->command(A, 0.0), 0U);
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_EQ(bus_->gateway().deepest(), 2U);
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return !bus_->status(A).stop_active; }));
+  bus_->run(5.0);
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
+TEST_F(BehindAGateway, stopsOfAllAgainAndAgainDoNotPileUpInIt)
+{
+  start(twoDrives("gateway_timeout: 6.0\n"));
+  turn(A, "a");
+  bus_->gateway().behaviour.hold = { 0x02 };
+  bus_->gateway().behaviour.hold_time = 4.0;
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->gateway().held() > 0; }));
+  bus_->clearFrames();
+  for (int tenth = 0; tenth < 15; ++tenth)
+  {
+    bus_->stop(std::nullopt);
+    bus_->run(0.1);
+  }
+  EXPECT_LE(bus_->gateway().deepest(), 4U) << "what it holds, one stop of all, and one of each";
+  ASSERT_TRUE(bus_->runUntil(5.0, [&] { return bus_->motor("a", "run_coil") == 0.0; }));
+  EXPECT_EQ(bus_->count("00 "), 1U);
+  EXPECT_TRUE(bus_->runUntil(5.0, [&] { return !bus_->status(A).stop_active && !bus_->status(B).stop_active; }));
+  // Kept busy once more: the next one goes again.
+  bus_->gateway().behaviour.hold = { 0x02 };
+  ASSERT_TRUE(bus_->runUntil(3.0, [&] { return bus_->gateway().held() > 1; }));
+  bus_->stop(std::nullopt);
+  bus_->run(5.0);
+  EXPECT_EQ(bus_->count("00 "), 2U);
 }
 
 TEST_F(BehindAGateway, aRunThatIsCarriedOutAfterItsConnectionHasEndedIsStopped)
@@ -523,6 +629,91 @@ TEST_F(BehindAGateway, nothingIsRepeatedThatAClosedConnectionMayHaveCarriedOut)
   EXPECT_EQ(answer.error_id, wire::ERROR_TIMEOUT);
   bus_->run(3.0);
   EXPECT_EQ(bus_->count("01 10 11 02"), 1U);
+}
+
+TEST_F(BehindAGateway, howLongAnOfflineInverterMayNeedToBeBackIsShownAndKept)
+{
+  for (const double silence : { 0.1, 0.25, 1.0 })
+  {
+    start();
+    bus_->gateway().behaviour.silence = silence;
+    bus_->settleIn(20.0);
+    EXPECT_EQ(busValue("offline inverter back within"), "60 s") << "gateway_timeout, until it is measured";
+    const double within = std::max(3.0, silence / 0.05);
+    bus_->world("b offline");
+    ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B); }));
+    bus_->run(7.0 + within);
+    EXPECT_NEAR(std::stod(busValue("offline inverter back within")), within, 0.15 * within) << silence;
+    bus_->world("b online");
+    EXPECT_TRUE(bus_->runUntil(within * 1.2 + 0.5, [&] { return online(B); })) << silence;
+  }
+}
+
+/// A has a communication time-out of 0.8 s (which it only shows), and a silent station keeps the gateway for 1.5 s.
+class BesideAShortTimeOut : public BehindAGateway
+{
+protected:
+  void SetUp() override
+  {
+    start(twoDrives("gateway_timeout: 2.0\n") + "simulation:\n  a: {parameters: {C077: 0.8, C076: 2}}\n");
+    bus_->gateway().behaviour.silence = 1.5;
+  }
+
+  std::size_t warnings() const
+  {
+    const auto& log = bus_->log();
+    return static_cast<std::size_t>(std::count_if(log.begin(), log.end(), [](const bus::Finding& line) {
+      return line.level == bus::Level::Warn && line.text.find("each try of its stop") != std::string::npos;
+    }));
+  }
+
+  void loseB()
+  {
+    bus_->world("b offline");
+    ASSERT_TRUE(bus_->runUntil(60.0, [&] { return !online(B); }));
+  }
+};
+
+TEST_F(BesideAShortTimeOut, nobodyIsProbedWhileItRuns)
+{
+  turn(A, "a");
+  loseB();
+  bus_->run(10.0);
+  const double before = bus_->gateway().blocked();
+  bus_->run(60.0);
+  EXPECT_EQ(bus_->gateway().blocked(), before);
+  EXPECT_EQ(warnings(), 0U) << "no stop is pending";
+  EXPECT_THAT(busValue("offline inverter back within"), HasSubstr("not while a runs"));
+  bus_->wait(bus_->stop(A));
+  bus_->run(60.0);
+  EXPECT_GT(bus_->gateway().blocked(), before) << "at rest nothing is risked";
+}
+
+TEST_F(BesideAShortTimeOut, theStopOfAnOfflineInverterGoesAndIsWarnedOfOnce)
+{
+  bus_->settleIn(20.0);
+  bus_->stream(B, 20.0, 0.1, 300.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  turn(A, "a");
+  loseB();
+  EXPECT_TRUE(bus_->status(B).stop_active) << "it may run";
+  bus_->clearFrames();
+  bus_->run(120.0);
+  EXPECT_GE(bus_->count("02 05 00 00 00"), 3U) << "at the paid rate";
+  EXPECT_LE(bus_->count("02 05 00 00 00"), 8U);
+  EXPECT_EQ(warnings(), 1U);
+  EXPECT_THAT(bus_->logTexts(),
+              Contains(AllOf(HasSubstr("b: offline, but it may run"), HasSubstr("keeps the gateway for 1.5"),
+                             HasSubstr("time-out of a itself"), HasSubstr("800 ms"))));
+  bus_->world("b online");
+  ASSERT_TRUE(bus_->runUntil(60.0, [&] { return online(B) && !bus_->status(B).stop_active; }));
+  EXPECT_EQ(bus_->motor("b", "run_coil"), 0.0);
+  // Started and away again: that is another stop.
+  bus_->command(B, 0.0);
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] { return bus_->motor("b", "run_coil") > 0.0; }));
+  loseB();
+  bus_->run(60.0);
+  EXPECT_EQ(warnings(), 2U);
 }
 
 TEST_F(BehindAGateway, stopLatencyEndsAtTheAnswer)

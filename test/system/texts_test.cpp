@@ -129,6 +129,43 @@ TEST(Texts, aMemberOfARefusedGroupIsToldThatAnotherOneWasTheReason)
   EXPECT_THAT(bus.status(1).error_text, HasSubstr("send 0"));
 }
 
+TEST(Texts, aLiveMemberOfAGroupIsNotToldOfAnothersSilenceAsItsOwn)
+{
+  VirtualBus bus(TWO_BELTS);
+  bus.settleIn();
+  bus.world("feed offline");
+  ASSERT_TRUE(bus.runUntil(5.0, [&] { return bus.status(1).communication_error; }));
+  ASSERT_TRUE(bus.wait(bus.stop(0)).success);
+  // Locked itself, which counts less than the other one's silence.
+  EXPECT_EQ(bus::ERROR_OFFLINE, bus.group({ { 0, 10.0 }, { 1, 10.0 } }));
+  ASSERT_TRUE(bus.runUntil(0.4, [&] { return bus.status(0).error_id != 0; }));
+  EXPECT_EQ(bus::ERROR_OFFLINE, bus.status(0).error_id);
+  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("the group was refused: an inverter of it was offline"),
+                                              HasSubstr("send 0"), Not(HasSubstr("answers again"))));
+  bus.run(1.5);
+  EXPECT_EQ("the group was refused: an inverter of it was offline", bus.status(0).error_text) << "it is free";
+  EXPECT_THAT(bus.status(1).error_text, HasSubstr("the inverter is offline: no reply in time"));
+}
+
+TEST(Texts, aTripIsToBeResetBeforeAnythingElseHelps)
+{
+  VirtualBus bus(ONE_BELT);
+  bus.settleIn();
+  bus.stream(0, 20.0, 0.1, 60.0);
+  bus.run(2.0);
+  bus.world("belt trip 7");
+  ASSERT_TRUE(bus.runUntil(5.0, [&] { return bus.status(0).locked && !bus.status(0).stop_active; }));
+  bus.run(1.0);
+  EXPECT_EQ(bus::ERROR_LOCKED, bus.status(0).error_id);
+  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("tripped"), HasSubstr("call reset, then send 0")));
+  EXPECT_THAT(bus.logTexts(), ::testing::Contains(AllOf(HasSubstr("refused"), HasSubstr("call reset, then send 0"))));
+  ASSERT_TRUE(bus.wait(bus.reset(0)).success);
+  bus.run(1.0);
+  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("send 0"), Not(HasSubstr("reset")), Not(HasSubstr("tripped"))));
+  bus.command(0, 0.0);
+  ASSERT_TRUE(bus.runUntil(5.0, [&] { return bus.status(0).monitor.running.value_or(false); }));
+}
+
 TEST(Texts, whoComesOnlineSaysWhatHasToBeDoneBeforeItMoves)
 {
   VirtualBus bus(ONE_BELT);

@@ -42,7 +42,7 @@ CommandError::Cause CommandError::causeOf(std::uint16_t error_id, const std::str
     default:
       return Cause::Lasting;
   }
-  if (text == errorText(ERROR_LOCKED))
+  if (text == lockedText(false) || text == lockedText(true))
   {
     return Cause::Lock;
   }
@@ -56,17 +56,18 @@ CommandError::Cause CommandError::causeOf(std::uint16_t error_id, const std::str
 void CommandError::set(std::uint16_t error_id, const std::string& text, const Obstacles& now)
 {
   id_ = error_id;
+  group_text_.clear();
   text_ = text;
   cause_ = causeOf(error_id, text, now);
   before_offline_ = false;
 }
 
-void CommandError::setForOther(std::uint16_t error_id, const std::string& reasons)
+void CommandError::setForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
+                               const std::string& own_text, const Obstacles& now)
 {
+  set(own_error_id, own_text, now);
   id_ = error_id;
-  text_ = "the group was refused: " + otherText(error_id, reasons);
-  cause_ = Cause::Lasting;
-  before_offline_ = false;
+  group_text_ = "the group was refused: " + otherText(error_id, reasons);
 }
 
 void CommandError::clear()
@@ -126,13 +127,25 @@ std::string CommandError::pastText() const
   }
 }
 
-std::string CommandError::text(const Obstacles& now, const std::string& offline_reason) const
+/// A trip may have come, or have been reset, since it was refused because of a lock.
+std::string CommandError::lastingText(const Obstacles& now, const std::string& offline_reason) const
 {
-  if (!lasts(now))
+  if (cause_ == Cause::Lock)
   {
-    return pastText();
+    return lockedText(now.tripped);
   }
   return text_ + (cause_ == Cause::Offline && !offline_reason.empty() ? ": " + offline_reason : "");
+}
+
+std::string CommandError::text(const Obstacles& now, const std::string& offline_reason) const
+{
+  const bool lasting = lasts(now);
+  if (group_text_.empty())
+  {
+    return lasting ? lastingText(now, offline_reason) : pastText();
+  }
+  const bool own = lasting && !text_.empty();
+  return group_text_ + (own ? "; this one itself: " + lastingText(now, offline_reason) : "");
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -14,6 +14,8 @@ namespace bus
 struct Obstacles
 {
   bool locked = false;
+  /// The drive has tripped, which locks it until it was reset.
+  bool tripped = false;
   bool offline = false;
   bool stop_pending = false;
   bool reset_active = false;
@@ -28,8 +30,10 @@ class CommandError
 public:
   /// \p now what stood in the way when it was refused (locked is not asked for)
   void set(std::uint16_t error_id, const std::string& text, const Obstacles& now);
-  /// The whole group was refused for the sake of other members, for \p reasons (names and texts).
-  void setForOther(std::uint16_t error_id, const std::string& reasons);
+  /// The whole group was refused for the sake of other members, for \p reasons (names and texts). \p own_error_id and
+  /// \p own_text: what stood in the way of this one as well, but counts less; 0: nothing did.
+  void setForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
+                   const std::string& own_text, const Obstacles& now);
   void clear();
   /// The inverter has gone offline: that is newer, and what counts.
   void wentOffline();
@@ -54,9 +58,13 @@ private:
   };
   static Cause causeOf(std::uint16_t error_id, const std::string& text, const Obstacles& now);
   bool lasts(const Obstacles& now) const;
+  std::string lastingText(const Obstacles& now, const std::string& offline_reason) const;
   std::string pastText() const;
 
   std::uint16_t id_ = 0;
+  /// That other members of the group were the reason; empty: this inverter's own.
+  std::string group_text_;
+  /// The inverter's own reason; empty: it has none.
   std::string text_;
   Cause cause_ = Cause::Lasting;
   bool before_offline_ = false;

@@ -724,6 +724,7 @@ Obstacles Inverter::obstacles() const
 {
   Obstacles obstacles;
   obstacles.offline = offline_;
+  obstacles.tripped = interlock.isFaulted();
   obstacles.stop_pending = interlock.stopPending();
   obstacles.reset_active = reset_active;
   obstacles.in_setup = inSetup();
@@ -789,9 +790,10 @@ void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
   command_error_.set(error_id, text, obstacles());
 }
 
-void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons)
+void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
+                              const std::string& own_text)
 {
-  command_error_.setForOther(error_id, reasons);
+  command_error_.setForOther(error_id, reasons, own_error_id, own_text, obstacles());
 }
 
 void Inverter::acceptCommand()

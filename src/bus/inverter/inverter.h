@@ -202,8 +202,9 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
-  /// As a member of a group that was refused for the sake of another one.
-  void refuseForOther(std::uint16_t error_id, const std::string& reasons);
+  /// As a member of a group that was refused for the sake of another one, for what stood in its own way see CommandError.
+  void refuseForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
+                      const std::string& own_text);
   void acceptCommand();
   /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
   /// would hide it.

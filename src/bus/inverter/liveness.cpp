@@ -69,6 +69,11 @@ void Liveness::deafUntil(TimePoint time)
   deaf_until_ = time;
 }
 
+void Liveness::notWatching(TimePoint now, Duration duration)
+{
+  since_ = std::min(now, since_ + duration);
+}
+
 void Liveness::complete(TimePoint now)
 {
   since_ = now;

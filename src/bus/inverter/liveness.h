@@ -38,6 +38,8 @@ public:
   void watchFrom(TimePoint time);
   /// Until then no status is expected (a reset's deaf time).
   void deafUntil(TimePoint time);
+  /// Until \p now this node itself did not run, for \p duration: nobody asked for a status, so none was to be expected.
+  void notWatching(TimePoint now, Duration duration);
   void complete(TimePoint now);
   /// An exchange that is no read of a refresh was lost; see noteRead() for those.
   void missed(std::uint16_t error_id);

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/inverter/stop_job.h"
 
+#include <utility>
+
 namespace inverter_bus
 {
 namespace bus
@@ -46,6 +48,7 @@ void StopJob::request(TimePoint now, StopMode mode)
     attempts_ = 0;
     repeats_ = confirmed_ && now - last_sent_at_ < seconds(FLOOD_PAUSE_S) ? repeats_ + 1 : 0;
     confirmed_ = false;
+    told_costly_ = false;
   }
   pending_ = sequenceFor(mode) != "stop" || drive_.sequence("stop") != nullptr;
   mode_ = mode;
@@ -78,6 +81,11 @@ bool StopJob::written() const
 bool StopJob::repeats() const
 {
   return repeats_ >= FLOOD_OF_STOPS;
+}
+
+bool StopJob::takeCostly()
+{
+  return !std::exchange(told_costly_, true);
 }
 
 TimePoint StopJob::lastSentAt() const

@@ -33,6 +33,8 @@ public:
   bool repeats() const;
   /// The inverter is out of sight, or RUN was sent: whatever was confirmed may be over.
   void forgetConfirmation();
+  /// That its tries cost others dearly is to be said: once while it is pending.
+  bool takeCostly();
   /// When the last frame of any stop of this inverter left; the epoch: none has.
   TimePoint lastSentAt() const;
 
@@ -93,6 +95,7 @@ private:
   bool first_frame_left_ = false;
   bool first_frame_answered_ = false;
   bool provisional_ = false;
+  bool told_costly_ = false;
   /// A write of this attempt may have been answered by a late reply to an earlier request.
   bool acknowledged_in_doubt_ = false;
   bool wants_clear_line_ = false;

@@ -3,6 +3,7 @@
 #include "bus/link/gateway_queue.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace inverter_bus
 {
@@ -12,6 +13,8 @@ namespace
 {
 // Contract, 8.8: so many lost requests without any late answer, and the gateway is silent by nature.
 constexpr unsigned UNANSWERED_BY_NATURE = 3;
+// So many answers of the gateway's own in time, and its block has become so short.
+constexpr unsigned IN_TIME_BY_NATURE = 8;
 }  // namespace
 
 GatewayQueue::GatewayQueue(const Settings& settings) : settings_(settings)
@@ -37,7 +40,7 @@ void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverte
   {
     return;
   }
-  tick(now);
+  giveUp(now);
   Entry entry;
   entry.ticket = ticket;
   entry.inverter = inverter;
@@ -48,14 +51,37 @@ void GatewayQueue::sent(TimePoint now, std::uint64_t ticket, std::size_t inverte
   entries_.push_back(entry);
 }
 
-void GatewayQueue::answered(TimePoint now, std::uint64_t ticket)
+void GatewayQueue::answered(TimePoint now, std::uint64_t ticket, bool by_gateway)
 {
   const auto entry = find(ticket);
   if (entry != entries_.end())
   {
-    longest_reply_ = std::max(longest_reply_, now - entry->sent_at);
+    const Duration took = now - entry->sent_at;
+    longest_reply_ = std::max(longest_reply_, took);
+    if (by_gateway && !entry->behind_another)
+    {
+      noteInTime(std::min(took, settings_.timeout));
+    }
     entries_.erase(entry);
   }
+}
+
+/// In time or not: so long is everybody kept waiting.
+void GatewayQueue::noteInTime(Duration took)
+{
+  longest_in_time_ = std::max(longest_in_time_, took);
+  if (++in_time_ >= IN_TIME_BY_NATURE)
+  {
+    noteBlock(longest_in_time_);
+  }
+  block_ = std::max(block_, took);
+}
+
+void GatewayQueue::noteBlock(Duration block)
+{
+  block_ = block;
+  in_time_ = 0;
+  longest_in_time_ = Duration::zero();
 }
 
 void GatewayQueue::lost(TimePoint now, std::uint64_t ticket)
@@ -65,7 +91,7 @@ void GatewayQueue::lost(TimePoint now, std::uint64_t ticket)
   {
     entry->lost = true;
   }
-  tick(now);
+  giveUp(now);
 }
 
 std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std::uint64_t ticket)
@@ -80,7 +106,7 @@ std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std:
   const Late late{ entry->inverter, entry->risk, !entry->behind_another, entry->probe };
   if (late.alone)
   {
-    block_ = now - entry->sent_at;
+    noteBlock(std::min(now - entry->sent_at, settings_.timeout));
   }
   entries_.erase(entry);
   return late;
@@ -88,9 +114,10 @@ std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std:
 
 void GatewayQueue::connectionEnded(TimePoint now)
 {
-  tick(now);
+  giveUp(now);
   for (Entry& entry : entries_)
   {
+    noteCutShort(entry, now);
     entry.orphan = true;
   }
   // Only what may start a motor matters beyond the connection.
@@ -105,25 +132,51 @@ void GatewayQueue::noteUnanswered(const Entry& entry)
   if (entry.lost && !entry.orphan && !entry.behind_another)
   {
     // As long as it was waited for, not as long as the next one will be.
-    block_ = wait();
+    noteBlock(wait());
     unanswered_ = std::min(unanswered_ + 1, UNANSWERED_BY_NATURE);
   }
 }
 
-std::optional<Duration> GatewayQueue::tick(TimePoint now)
+/// It was waited for until its connection ended: a gateway may say so that a station is silent.
+void GatewayQueue::noteCutShort(const Entry& entry, TimePoint now)
 {
-  std::optional<Duration> kept;
+  if (!entry.lost || entry.orphan)
+  {
+    return;
+  }
+  const Duration kept = std::min(now - entry.sent_at, wait());
+  noteKept(entry, kept);
+  // At least: it may have been ended for another reason.
+  block_ = entry.behind_another ? block_ : std::max(block_, kept);
+}
+
+void GatewayQueue::noteKept(const Entry& entry, Duration kept)
+{
+  if (entry.probe && !entry.orphan)
+  {
+    kept_ = std::max(kept_.value_or(Duration::zero()), kept);
+  }
+}
+
+void GatewayQueue::giveUp(TimePoint now)
+{
   for (auto entry = entries_.begin(); entry != entries_.end();)
   {
     const bool over = (entry->lost || entry->orphan) && givenUpAt(*entry) <= now;
     if (over)
     {
-      kept = entry->probe && !entry->orphan ? std::optional<Duration>(now - entry->sent_at) : kept;
+      // Not until now: who looks late has not been kept for so long.
+      noteKept(*entry, givenUpAt(*entry) - entry->sent_at);
       noteUnanswered(*entry);
     }
     entry = over ? entries_.erase(entry) : entry + 1;
   }
-  return kept;
+}
+
+std::optional<Duration> GatewayQueue::tick(TimePoint now)
+{
+  giveUp(now);
+  return std::exchange(kept_, std::nullopt);
 }
 
 // --- what may go -----------------------------------------------------------------------------------------------------

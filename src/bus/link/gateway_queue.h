@@ -21,7 +21,7 @@ enum class GatewayRisk
   None,
   /// The refresh of a drive whose own time-out is near, which goes in spite of an older request.
   Refresh,
-  /// A frame of a stop.
+  /// A frame of a stop, or of a velocity of 0 or near it, which is one, too.
   Stop,
   /// May set RUN or raise the frequency.
   Motion
@@ -52,8 +52,8 @@ public:
   // --- what happened --------------------------------------------------------------------------------------------------
   /// A request has left for \p inverter; \p probe: it is paid from the probes' share of the time.
   void sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk, bool probe = false);
-  /// It was answered in time, by the drive or by the gateway.
-  void answered(TimePoint now, std::uint64_t ticket);
+  /// It was answered in time, by the drive, or \p by_gateway for a station that is silent.
+  void answered(TimePoint now, std::uint64_t ticket, bool by_gateway = false);
   /// Our own time-out has passed.
   void lost(TimePoint now, std::uint64_t ticket);
   /// What is known of a request that was answered after all.
@@ -69,8 +69,8 @@ public:
   std::optional<Late> answeredLate(TimePoint now, std::uint64_t ticket);
   /// The connection has ended: no answer comes any more, but what was under way may still be carried out.
   void connectionEnded(TimePoint now);
-  /// Time has passed: what was waited for long enough is not owed any more. Returns the time that the gateway was kept for
-  /// nothing by a probe that was given up now.
+  /// Time has passed: what was waited for long enough is not owed any more. Returns how long a probe has kept the gateway
+  /// that was given up since the last call, whatever has shown it; the longest one of several, which ran side by side.
   std::optional<Duration> tick(TimePoint now);
 
   // --- what may go ----------------------------------------------------------------------------------------------------
@@ -88,7 +88,8 @@ public:
   bool behindAnother(std::uint64_t ticket) const;
 
   // --- what it has learned --------------------------------------------------------------------------------------------
-  /// How long the last request that nobody answered in time has kept the gateway; 0: none has.
+  /// How long the last request that no drive answered has kept the gateway; 0: none has. One that the gateway itself answered
+  /// in time, perhaps because it had asked in vain a moment ago, makes it shorter only after several such in a row.
   Duration block() const;
   /// How long nothing but stops may go because of one lost request, by what is known now: block(), or while one is waited
   /// for, the wait.
@@ -115,12 +116,22 @@ private:
   TimePoint givenUpAt(const Entry& entry) const;
   bool owed(const Entry& entry, TimePoint now) const;
   std::vector<Entry>::iterator find(std::uint64_t ticket);
+  void giveUp(TimePoint now);
+  void noteInTime(Duration took);
+  void noteBlock(Duration block);
+  void noteCutShort(const Entry& entry, TimePoint now);
+  void noteKept(const Entry& entry, Duration kept);
   void noteUnanswered(const Entry& entry);
 
   Settings settings_;
   std::vector<Entry> entries_;
   Duration block_{ 0 };
+  /// The gateway's own answers in time since the last request that was not answered in time, or since so many of them.
+  unsigned in_time_ = 0;
+  Duration longest_in_time_{ 0 };
   Duration longest_reply_{ 0 };
+  /// By probes that were given up since the last tick().
+  std::optional<Duration> kept_;
   /// Lost requests in a row that were not answered within `gateway_timeout`.
   unsigned unanswered_ = 0;
 };

@@ -42,6 +42,15 @@ void LinkWatch::lost(TimePoint sent_at)
   unanswered_since_ = unanswered_since_ ? unanswered_since_ : std::optional<TimePoint>(sent_at);
 }
 
+void LinkWatch::notWatching(Duration duration)
+{
+  opened_at_ += duration;
+  for (auto* since : { &silent_since_, &unanswered_since_ })
+  {
+    *since = *since ? std::optional<TimePoint>(**since + duration) : std::nullopt;
+  }
+}
+
 bool LinkWatch::wasSilent(TimePoint now) const
 {
   return unanswered_since_ && now - *unanswered_since_ >= patience_;

@@ -26,6 +26,9 @@ public:
   /// A request that left at \p sent_at was not answered.
   void lost(TimePoint sent_at);
 
+  /// For \p duration until now nobody here has asked: that nobody has answered meanwhile says nothing of the link.
+  void notWatching(Duration duration);
+
   /// Nobody has answered for so long that it is the link, not a station, that is silent.
   bool wasSilent(TimePoint now) const;
   /// Time to open the link anew.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "bus/rules/scheduler.h"
 #include "wire/shown_number.h"
 
 namespace inverter_bus
@@ -13,6 +14,10 @@ namespace bus
 {
 namespace
 {
+// Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
+constexpr double RETURN_S = 3.0;
+constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
+
 std::string milliseconds(Duration duration)
 {
   std::ostringstream text;
@@ -227,6 +232,28 @@ std::string Budget::behindGateway() const
                                        : "";
 }
 
+Duration Budget::longestReturn(Duration block, std::size_t offline)
+{
+  const double each = std::max(toSeconds(block) / PROBE_SHARE, PROBE_PERIOD_S);
+  return seconds(std::max(RETURN_S, static_cast<double>(std::max<std::size_t>(offline, 1)) * each));
+}
+
+/// Contract, 8.8: what the probes' share makes of 3.7 where the gateway is kept for long.
+std::optional<Finding> Budget::returnBehindGateway() const
+{
+  const Duration block = seconds(configuration_.bus.gateway_timeout);
+  if (!configuration_.bus.modbus_tcp || block <= seconds(SHORT_BLOCK_S))
+  {
+    return std::nullopt;
+  }
+  return Finding{ Level::Ok,
+                  "an inverter that was offline may need up to " + wire::shownDuration(longestReturn(block, 1)) +
+                      " (times the number of those that are offline) to be back, if a silent station keeps the "
+                      "gateway for gateway_timeout (" +
+                      wire::shownDuration(block) + "); " + wire::shownDuration(longestReturn({}, 1)) +
+                      " if it does so for " + wire::shownDuration(seconds(SHORT_BLOCK_S)) + " at most" };
+}
+
 std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
@@ -235,6 +262,10 @@ std::vector<Finding> Budget::findings() const
                                       " (plus the ramp), longest gap between two frames to "
                                       "an inverter " +
                                       milliseconds(longestGap()) });
+  if (const auto finding = returnBehindGateway())
+  {
+    findings.push_back(*finding);
+  }
   for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
   {
     const InverterConfig& config = configuration_.bus.inverters[index];

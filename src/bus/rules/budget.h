@@ -52,12 +52,17 @@ public:
   /// The same with deadlineMargin() at hand.
   static std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout, Duration margin);
 
+  /// How long an inverter that answers again may stay offline behind a gateway which each silent station keeps for \p block:
+  /// the probes of \p offline inverters (itself included, at least 1) take turns. With a short block what rule 3.7 says.
+  static Duration longestReturn(Duration block, std::size_t offline);
+
 private:
   Duration readCost(std::size_t index, const drive::ReadBlock& block) const;
   Duration refreshCost(std::size_t index) const;
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
   std::string behindGateway() const;
+  std::optional<Finding> returnBehindGateway() const;
 
   const Configuration& configuration_;
   const wire::Line& line_;

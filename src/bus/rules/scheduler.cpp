@@ -25,8 +25,8 @@ constexpr unsigned EXCHANGES_PER_BACKGROUND = 8;
 // A lone command goes at once (rule 3.6); a flood of them, each arriving during the one before, lets a refresh through.
 constexpr unsigned LONE_COMMANDS_IN_A_ROW = 3;
 constexpr double LONGEST_SLEEP_S = 0.25;
-// Contract, 8.8: each offline inverter at most so often.
-constexpr double PROBE_PERIOD_S = 0.5;
+// How soon it is noticed that a gateway has answered late, so that the others may go on.
+constexpr double LATE_ANSWER_PERIOD_S = 0.02;
 }  // namespace
 
 Scheduler::Scheduler(const Settings& settings)
@@ -125,7 +125,7 @@ Pick Scheduler::chooseBehindGateway(TimePoint now, const std::vector<InverterVie
     return *deadline;
   }
   Pick pick = nothing(now, views);
-  pick.wake = gate.until > now ? std::min(pick.wake, gate.until) : pick.wake;
+  pick.wake = gate.until > now ? std::min({ pick.wake, gate.until, now + seconds(LATE_ANSWER_PERIOD_S) }) : pick.wake;
   return pick;
 }
 

@@ -27,6 +27,11 @@ enum class CommandKind
 
 using CommandId = std::uint64_t;
 
+/// Contract, rule 3.7: the share of the time that all probes of offline inverters take together.
+constexpr double PROBE_SHARE = 0.05;
+/// Contract, 8.8: [s], each offline inverter at most so often.
+constexpr double PROBE_PERIOD_S = 0.5;
+
 /// A command that waits for its next exchange.
 struct WaitingCommand
 {
@@ -128,7 +133,7 @@ public:
     /// Inverters at rest take part in every n-th cycle only.
     unsigned idle_divisor = 1;
     /// Share of the bus time that probes of offline inverters may take.
-    double probe_share = 0.05;
+    double probe_share = PROBE_SHARE;
   };
 
   explicit Scheduler(const Settings& settings);

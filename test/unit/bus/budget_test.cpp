@@ -179,6 +179,30 @@ TEST(Budget, printsTheThreeFiguresInOneLine)
                                    HasSubstr("296.")));
 }
 
+TEST(Budget, saysHowLongAnOfflineInverterMayNeedToBeBackBehindAGateway)
+{
+  // 5 % of 60 s are 3 s, and 5 % of 3 s are 0.15 s.
+  Planned bus(1);
+  const auto told = HasSubstr("to be back");
+  EXPECT_THAT(bus.texts(Level::Ok), Not(Contains(told))) << "a serial port";
+  bus.configuration.bus.modbus_tcp = true;
+  bus.configuration.bus.gateway_timeout = 3.0;
+  EXPECT_THAT(bus.texts(Level::Ok),
+              Contains(AllOf(told, HasSubstr("up to 60 s"), HasSubstr("3 s if it does so for 150 ms at most"))));
+  bus.configuration.bus.gateway_timeout = 0.15;
+  EXPECT_THAT(bus.texts(Level::Ok), Not(Contains(told)));
+}
+
+TEST(Budget, offlineInvertersTakeTurnsToBeBackBehindAGateway)
+{
+  EXPECT_NEAR(ms(Budget::longestReturn(Ms(1000), 1)), 20000.0, 1.0);
+  EXPECT_NEAR(ms(Budget::longestReturn(Ms(1000), 3)), 60000.0, 1.0);
+  EXPECT_NEAR(ms(Budget::longestReturn(Ms(1000), 0)), 20000.0, 1.0) << "the next one that goes offline";
+  EXPECT_NEAR(ms(Budget::longestReturn(Ms(150), 1)), 3000.0, 1.0);
+  EXPECT_NEAR(ms(Budget::longestReturn(Ms(0), 4)), 3000.0, 1.0);
+  EXPECT_NEAR(ms(Budget::longestReturn(Ms(0), 10)), 5000.0, 1.0) << "each at most once in 0.5 s";
+}
+
 TEST(Budget, warnsOfNothingOnASmallBus)
 {
   EXPECT_THAT(Planned(1).texts(Level::Warn), testing::IsEmpty());

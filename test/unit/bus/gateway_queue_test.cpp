@@ -79,6 +79,31 @@ TEST_F(AGatewayQueue, isFreeAsSoonAsTheLateAnswerHasCome)
   EXPECT_FALSE(queue_.answeredLate(at(1.2), ticket)) << "it is owed one answer only";
 }
 
+TEST_F(AGatewayQueue, isKeptByASilentStationAlsoWhenItSaysSoInTime)
+{
+  answer(0.0, 0.2, LIVE);
+  EXPECT_EQ(queue_.block(), Duration::zero()) << "a drive's answer";
+  queue_.sent(at(1.0), 100, DEAD, GatewayRisk::None);
+  queue_.answered(at(1.25), 100, true);
+  EXPECT_EQ(queue_.block(), seconds(0.25));
+  queue_.sent(at(2.0), 101, DEAD, GatewayRisk::None);
+  queue_.answered(at(2.01), 101, true);
+  EXPECT_EQ(queue_.block(), seconds(0.25)) << "it may know that from a moment ago";
+}
+
+TEST_F(AGatewayQueue, aTimeOutThatWasShortenedInItCountsAfterAWhile)
+{
+  queue_.answeredLate(at(2.2), lose(0.0, DEAD));
+  ASSERT_EQ(queue_.block(), seconds(2.2));
+  for (int probe = 0; probe < 8; ++probe)
+  {
+    EXPECT_EQ(queue_.block(), seconds(2.2)) << probe;
+    queue_.sent(at(10.0 + probe), 100, DEAD, GatewayRisk::None);
+    queue_.answered(at(10.1 + probe), 100, true);
+  }
+  EXPECT_EQ(queue_.block(), seconds(10.1) - seconds(10.0));
+}
+
 TEST_F(AGatewayQueue, letsOneStopFramePerInverterIn)
 {
   lose(0.0, DEAD);
@@ -188,12 +213,68 @@ TEST_F(AGatewayQueue, tellsWhatAGivenUpProbeHasCost)
   EXPECT_FALSE(queue_.tick(at(3.1))) << "once";
 }
 
+TEST_F(AGatewayQueue, tellsWhatAGivenUpProbeHasCostAlsoWhenAnotherRequestHasShownIt)
+{
+  queue_.sent(at(0.0), 100, DEAD, GatewayRisk::None, true);
+  queue_.lost(at(0.3), 100);
+  // A stop goes in spite of it, and it is given up while that one is on its way.
+  queue_.sent(at(2.8), 101, LIVE, GatewayRisk::Stop);
+  queue_.lost(at(3.1), 101);
+  EXPECT_EQ(queue_.tick(at(3.1)), std::optional<Duration>(std::chrono::seconds(3)));
+  EXPECT_FALSE(queue_.tick(at(3.2))) << "once";
+  queue_.sent(at(10.0), 102, DEAD, GatewayRisk::None, true);
+  queue_.lost(at(10.3), 102);
+  queue_.sent(at(13.5), 103, LIVE, GatewayRisk::None);
+  EXPECT_EQ(queue_.tick(at(13.6)), std::optional<Duration>(std::chrono::seconds(3)));
+}
+
+TEST_F(AGatewayQueue, whoLooksLateHasNotBeenKeptForSoLong)
+{
+  queue_.sent(at(0.0), 1, DEAD, GatewayRisk::None, true);
+  queue_.lost(at(0.3), 1);
+  EXPECT_EQ(queue_.tick(at(60.0)), std::optional<Duration>(std::chrono::seconds(3)));
+  queue_.sent(at(70.0), 2, DEAD, GatewayRisk::None);
+  queue_.lost(at(70.3), 2);
+  queue_.answeredLate(at(130.0), 2);
+  EXPECT_EQ(queue_.block(), std::chrono::seconds(3));
+}
+
+TEST_F(AGatewayQueue, theLongestOfTheProbesThatRanSideBySideIsPaid)
+{
+  for (const std::uint64_t ticket : { 1U, 2U })
+  {
+    queue_.sent(at(static_cast<double>(ticket)), ticket, DEAD, GatewayRisk::Stop, true);
+    queue_.lost(at(static_cast<double>(ticket) + 0.3), ticket);
+  }
+  EXPECT_EQ(queue_.tick(at(9.0)), std::optional<Duration>(std::chrono::seconds(3)));
+  EXPECT_FALSE(queue_.tick(at(9.0)));
+}
+
+TEST_F(AGatewayQueue, aProbeInWhosePlaceTheConnectionWasEndedHasCostTheTimeUntilThen)
+{
+  queue_.sent(at(0.0), 1, DEAD, GatewayRisk::None, true);
+  queue_.lost(at(0.3), 1);
+  queue_.connectionEnded(at(1.2));
+  EXPECT_EQ(queue_.tick(at(1.2)), std::optional<Duration>(seconds(1.2)));
+  EXPECT_EQ(queue_.block(), seconds(1.2)) << "so long has the gateway waited for the station";
+  EXPECT_FALSE(queue_.tick(at(5.0))) << "once";
+}
+
+TEST_F(AGatewayQueue, aConnectionThatEndsSoonerMakesTheBlockNoShorter)
+{
+  lose(0.0, DEAD);
+  queue_.tick(at(3.0));
+  ASSERT_EQ(queue_.block(), seconds(3.0));
+  lose(4.0, LIVE);
+  queue_.connectionEnded(at(4.4));
+  EXPECT_EQ(queue_.block(), seconds(3.0));
+}
+
 TEST_F(AGatewayQueue, aLostRequestThatWasNoProbeCostsTheProbesNothing)
 {
   lose(0.0, LIVE);
   EXPECT_FALSE(queue_.tick(at(3.0)));
-  queue_.sent(at(4.0), 2, DEAD, GatewayRisk::Motion, true);
-  queue_.lost(at(4.3), 2);
+  lose(4.0, LIVE, GatewayRisk::Motion);
   queue_.connectionEnded(at(4.5));
   EXPECT_FALSE(queue_.tick(at(7.0))) << "of a connection that has ended";
 }

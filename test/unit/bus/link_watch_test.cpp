@@ -60,6 +60,17 @@ TEST_F(ALinkWatch, nobodyIsMuteWhoWasNotAsked)
   EXPECT_FALSE(watch_.mute(at(2000.0)));
 }
 
+TEST_F(ALinkWatch, timeInWhichNobodyAskedMakesItNotMute)
+{
+  watch_.opened(at(0.0));
+  watch_.answered();
+  watch_.lost(at(1.0));
+  watch_.notWatching(std::chrono::seconds(60));
+  EXPECT_FALSE(watch_.mute(at(65.9)));
+  EXPECT_FALSE(watch_.wasSilent(at(65.9)));
+  EXPECT_TRUE(watch_.mute(at(66.0)));
+}
+
 TEST_F(ALinkWatch, knowsThatItWasTheLinkThatWasSilentHoweverOftenItWasOpenedAnew)
 {
   watch_.opened(at(0.0));

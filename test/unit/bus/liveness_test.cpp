@@ -133,6 +133,27 @@ TEST(Liveness, aCompleteStatusForgivesEverything)
   EXPECT_EQ(liveness.lastError(), 0);
 }
 
+TEST(Liveness, timeInWhichNobodyLookedIsNotCounted)
+{
+  Liveness liveness(3);
+  liveness.complete(at(1000));
+  liveness.noteRead(LONG, silence());
+  liveness.noteRead(LONG, silence());
+  liveness.notWatching(at(61500), Ms(60000));
+  EXPECT_FALSE(liveness.overdue(at(63000), Ms(100)));
+  EXPECT_TRUE(liveness.overdue(at(63001), Ms(100))) << "what was counted before goes on";
+}
+
+TEST(Liveness, timeInWhichNobodyLookedIsNoCreditForLater)
+{
+  Liveness liveness(3);
+  liveness.complete(at(1000));
+  liveness.notWatching(at(1100), Ms(60000));
+  liveness.noteRead(LONG, silence());
+  liveness.noteRead(LONG, silence());
+  EXPECT_TRUE(liveness.overdue(at(3101), Ms(100)));
+}
+
 TEST(Liveness, theDeafTimeOfAResetIsNotCounted)
 {
   Liveness liveness(3);

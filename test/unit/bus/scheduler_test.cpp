@@ -1492,6 +1492,18 @@ TEST(Scheduler, offersNothingAndAWakeUpWhenEverythingIsQuiet)
   EXPECT_THAT(pick.wake, AllOf(Gt(line.now), Le(line.now + Ms(100))));
 }
 
+/// Everybody waits for it.
+TEST(Scheduler, looksSoonWhetherAGatewayHasAnsweredLate)
+{
+  VirtualLine line(2);
+  Gate gate;
+  gate.stops_only = true;
+  gate.until = line.now + Ms(3000);
+  const Pick pick = line.scheduler.next(line.now, line.views, gate);
+  EXPECT_EQ(pick.what, Pick::What::Nothing);
+  EXPECT_THAT(pick.wake, AllOf(Gt(line.now), Le(line.now + Ms(20))));
+}
+
 TEST(Scheduler, wakesForAPostponedCommand)
 {
   VirtualLine line(1, std::chrono::minutes(5));

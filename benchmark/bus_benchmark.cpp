@@ -66,7 +66,7 @@ class FrameLog
 public:
   void add(const simulation::FrameRecord& frame)
   {
-    if (frame.source != simulation::FrameRecord::Source::MASTER)
+    if (frame.source != simulation::FrameRecord::Source::Master)
     {
       return;
     }

@@ -338,9 +338,9 @@ void Checker::payProbe(TimePoint now, Duration cost)
 
 void Checker::onFrame(TimePoint now, const simulation::FrameRecord& frame)
 {
-  if (frame.source == Source::MASTER || frame.source == Source::FOREIGN_MASTER)
+  if (frame.source == Source::Master || frame.source == Source::ForeignMaster)
   {
-    const bool ours = frame.source == Source::MASTER;
+    const bool ours = frame.source == Source::Master;
     const RequestFacts facts = readRequest(scene_, frame.bytes);
     if (frame.remark.empty() && facts.inverter)
     {
@@ -357,7 +357,7 @@ void Checker::onFrame(TimePoint now, const simulation::FrameRecord& frame)
     }
     return;
   }
-  if (frame.source != Source::DRIVE)
+  if (frame.source != Source::Drive)
   {
     return;
   }

@@ -31,7 +31,7 @@ namespace inverter_bus
 class VirtualBus
 {
 public:
-  explicit VirtualBus(const std::string& yaml, simulation::GapRule gap = simulation::GapRule::ENFORCE)
+  explicit VirtualBus(const std::string& yaml, simulation::GapRule gap = simulation::GapRule::Enforce)
     : simulated_(simulation::busConfigFromText(yaml), lineOptions(gap), clock_.now())
     , configuration_(read(yaml))
     , port_(makePort())
@@ -244,7 +244,7 @@ public:
     std::vector<std::string> texts;
     for (const simulation::FrameRecord& frame : frames_)
     {
-      if (frame.source == simulation::FrameRecord::Source::MASTER)
+      if (frame.source == simulation::FrameRecord::Source::Master)
       {
         texts.push_back(hex(frame.bytes));
       }

@@ -115,7 +115,8 @@ def count(program, status, outcome):
     elif re.search(r'^Ran \d+ tests? in', outcome.output, re.MULTILINE):
         count_unittest(outcome)
     elif status == 0:
-        outcome.passed = 1
+        outcome.skipped = re.findall(r'^not run: (.*)$', outcome.output, re.MULTILINE)
+        outcome.passed = 0 if outcome.skipped else 1
     if status != 0 and not outcome.failed:
         outcome.failed.append('%s (exit status %s)' % (program.name, status))
     if status == 0 and not outcome.passed and not outcome.failed and not outcome.skipped:
@@ -202,6 +203,8 @@ def lint_programs(build):
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield python_program('lint', 'test/contract_test.py', build)
+    yield Program('lint', 'sizes', [sys.executable, os.path.join(ROOT, 'test', 'sizes.py')])
+    yield python_program('lint', 'test/sizes_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])
 
 

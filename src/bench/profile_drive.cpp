@@ -140,11 +140,11 @@ ModbusException ProfileDrive::readCoils(std::uint16_t wire, std::uint16_t count,
     const auto address = static_cast<std::uint16_t>(wire + i);
     if (!memory_->has(Space::Coil, address))
     {
-      return ModbusException::ADDRESS_NOT_FOUND;
+      return ModbusException::AddressNotFound;
     }
     values.push_back(memory_->word(Space::Coil, address) != 0);
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ProfileDrive::readRegisters(std::uint16_t wire, std::uint16_t count, std::vector<std::uint16_t>& values)
@@ -156,11 +156,11 @@ ModbusException ProfileDrive::readRegisters(std::uint16_t wire, std::uint16_t co
     const bool hole = !memory_->has(Space::Register, address);
     if (hole && (count == 1 || !profile_->hole))
     {
-      return ModbusException::ADDRESS_NOT_FOUND;
+      return ModbusException::AddressNotFound;
     }
     values.push_back(hole ? *profile_->hole : memory_->word(Space::Register, address));
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ProfileDrive::writeCoils(std::uint16_t wire, const std::vector<bool>& values)
@@ -178,7 +178,7 @@ ModbusException ProfileDrive::refusalOf(Space space, std::uint16_t address, std:
 {
   if (!memory_->has(space, address))
   {
-    return ModbusException::ADDRESS_NOT_FOUND;
+    return ModbusException::AddressNotFound;
   }
   for (const auto& entry : profile_->parameters)
   {
@@ -194,10 +194,10 @@ ModbusException ProfileDrive::refusalOf(Space space, std::uint16_t address, std:
         parameter.range && (shown < parameter.range->first - slack || shown > parameter.range->second + slack);
     if (outside || (motor_.turning() && !parameter.while_running.value_or(true)))
     {
-      return ModbusException::FORMAT_NOT_ACCEPTABLE;
+      return ModbusException::FormatNotAcceptable;
     }
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ProfileDrive::write(Space space, std::uint16_t wire, const std::vector<std::uint16_t>& values)
@@ -205,7 +205,7 @@ ModbusException ProfileDrive::write(Space space, std::uint16_t wire, const std::
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const ModbusException refusal = refusalOf(space, static_cast<std::uint16_t>(wire + i), values[i]);
-    if (refusal != ModbusException::NONE)
+    if (refusal != ModbusException::None)
     {
       return refusal;
     }
@@ -215,7 +215,7 @@ ModbusException ProfileDrive::write(Space space, std::uint16_t wire, const std::
     memory_->setWord(space, static_cast<std::uint16_t>(wire + i), values[i]);
   }
   obey(space, wire, values.size());
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 /// A reset is seen by the first word that it writes: what it leaves behind looks like a stop on many drives.

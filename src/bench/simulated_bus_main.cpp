@@ -72,7 +72,7 @@ Parity parityOf(const std::string& option, const std::string& text)
   {
     throw ConfigError("--" + option + ": " + text + " (allowed: none, even, odd)");
   }
-  return text == "none" ? Parity::NONE : (text == "even" ? Parity::EVEN : Parity::ODD);
+  return text == "none" ? Parity::None : (text == "even" ? Parity::Even : Parity::Odd);
 }
 
 SerialOptions readSerialOptions(const po::variables_map& values)
@@ -119,7 +119,7 @@ LineOptions readLineOptions(const po::variables_map& values)
     throw ConfigError("--gap: " + gap + " (allowed: enforce, ignore)");
   }
   LineOptions options;
-  options.gap = gap == "enforce" ? GapRule::ENFORCE : GapRule::IGNORE;
+  options.gap = gap == "enforce" ? GapRule::Enforce : GapRule::Ignore;
   options.gap_tolerance = seconds(values["gap-tolerance"].as<double>());
   options.delivery_step = std::chrono::microseconds(500);
   options.seed = values["seed"].as<std::uint64_t>();

@@ -37,7 +37,7 @@ struct Bus::Implementation
 
   void run();
   void deliver();
-  void answerNow(PendingAnswers answers);
+  void answerNow(const PendingAnswers& answers);
   void takeRealtimePriority();
 
   /// Runs \p request on the coordinator and delivers what it answered at once.
@@ -52,7 +52,7 @@ struct Bus::Implementation
       poked = true;
     }
     wake.notify_one();
-    answerNow(std::move(answers));
+    answerNow(answers);
   }
 
   const Configuration configuration;
@@ -74,9 +74,9 @@ struct Bus::Implementation
   std::thread thread;
 };
 
-void Bus::Implementation::answerNow(PendingAnswers answers)
+void Bus::Implementation::answerNow(const PendingAnswers& answers)
 {
-  for (auto& entry : answers)
+  for (const auto& entry : answers)
   {
     entry.first(entry.second);
   }
@@ -91,7 +91,7 @@ void Bus::Implementation::deliver()
     outputs = coordinator.takeOutputs();
     answers = coordinator.takeAnswers();
   }
-  answerNow(std::move(answers));
+  answerNow(answers);
   for (const InverterStatus& status : outputs.statuses)
   {
     observer.inverterStatus(status);

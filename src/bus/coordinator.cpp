@@ -505,7 +505,7 @@ std::optional<Write> Coordinator::nextWrite(TimePoint now, const Inverter& inver
   const bool in_force = inverter.mayRepeatWords(now);
   if (inverter.refresh.block() && (in_force || !inverter.movement.runConfirmed()))
   {
-    const auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.block() : std::nullopt);
+    auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.block() : std::nullopt);
     if (combined && line_.mayAsk(combined->request))
     {
       return combined;

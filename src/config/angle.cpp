@@ -118,7 +118,7 @@ private:
   {
     skipBlanks();
     const std::size_t start = at_;
-    const auto skipDigits = [this] {
+    const auto skip_digits = [this] {
       const std::size_t first = at_;
       while (at_ < text_.size() && std::isdigit(static_cast<unsigned char>(text_[at_])) != 0)
       {
@@ -126,16 +126,16 @@ private:
       }
       return at_ - first;
     };
-    const std::size_t whole = skipDigits();
+    const std::size_t whole = skip_digits();
     const bool leading_zero = whole > 1 && text_[start] == '0';
     const bool point = at_ < text_.size() && text_[at_] == '.';
     at_ += point ? 1 : 0;
-    const std::size_t fraction = point ? skipDigits() : 0;
+    const std::size_t fraction = point ? skip_digits() : 0;
     if (at_ < text_.size() && (text_[at_] == 'e' || text_[at_] == 'E'))
     {
       ++at_;
       at_ += at_ < text_.size() && (text_[at_] == '+' || text_[at_] == '-') ? 1 : 0;
-      failed_ = skipDigits() == 0 || failed_;
+      failed_ = skip_digits() == 0 || failed_;
     }
     failed_ = failed_ || whole + fraction == 0 || (leading_zero && !point);
     return failed_ ? 0.0 : readDecimal(text_.substr(start, at_ - start));

@@ -30,7 +30,7 @@ public:
   /// \param most_threads callbacks beyond this number wait for one of them to end; at least 1
   explicit ElasticQueue(std::size_t most_threads);
   /// As shutdown().
-  ~ElasticQueue() override;
+  ~ElasticQueue() override;  // NOLINT(bugprone-exception-escape): see its definition
 
   ElasticQueue(const ElasticQueue&) = delete;
   ElasticQueue& operator=(const ElasticQueue&) = delete;

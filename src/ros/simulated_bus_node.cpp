@@ -71,7 +71,7 @@ void assumeParity(sim::BusRunner& runner)
   {
     throw sim::ConfigError("client_parity: " + parity + " (allowed: none, even, odd)");
   }
-  runner.assumeParity(parity == "none" ? sim::Parity::NONE : (parity == "even" ? sim::Parity::EVEN : sim::Parity::ODD));
+  runner.assumeParity(parity == "none" ? sim::Parity::None : (parity == "even" ? sim::Parity::Even : sim::Parity::Odd));
 }
 
 std::string readLink()
@@ -92,7 +92,7 @@ sim::LineOptions readLineOptions()
     throw sim::ConfigError("gap: " + gap + " (allowed: enforce, ignore)");
   }
   sim::LineOptions options;
-  options.gap = gap == "enforce" ? sim::GapRule::ENFORCE : sim::GapRule::IGNORE;
+  options.gap = gap == "enforce" ? sim::GapRule::Enforce : sim::GapRule::Ignore;
   options.gap_tolerance = sim::seconds(ros::param::param("~gap_tolerance", 0.0003));
   options.delivery_step = std::chrono::microseconds(500);
   options.seed = static_cast<std::uint64_t>(ros::param::param("~seed", 1));
@@ -136,13 +136,13 @@ void play(ros::NodeHandle& node)
       ros::requestShutdown();
     }
   });
-  const boost::function<bool(inverter_bus::InjectFault::Request&, inverter_bus::InjectFault::Response&)> onCommand =
+  const boost::function<bool(inverter_bus::InjectFault::Request&, inverter_bus::InjectFault::Response&)> on_command =
       [&runner](inverter_bus::InjectFault::Request& request, inverter_bus::InjectFault::Response& response) {
         response.message = runner.command(request.command);
         response.success = static_cast<unsigned char>(response.message.compare(0, 2, "ok") == 0);
         return true;
       };
-  ros::ServiceServer service = node.advertiseService("command", onCommand);
+  ros::ServiceServer service = node.advertiseService("command", on_command);
   ROS_INFO("simulated bus ready: %s -> %s, %zu drives", runner.terminal().link().c_str(),
            runner.terminal().path().c_str(), bus.drives().size());
   ros::spin();
@@ -163,9 +163,9 @@ int main(int argc, char** argv)
     return *status;
   }
   ros::init(argc, argv, "simulated_bus");
-  const auto onSignal = [](int) { ros::requestShutdown(); };
-  std::signal(SIGTERM, onSignal);  // roscpp itself looks after SIGINT only
-  std::signal(SIGHUP, onSignal);
+  const auto on_signal = [](int) { ros::requestShutdown(); };
+  std::signal(SIGTERM, on_signal);  // roscpp itself looks after SIGINT only
+  std::signal(SIGHUP, on_signal);
   ros::NodeHandle node("~");  // lives until after the last message: without any, ROS logs nothing
   try
   {

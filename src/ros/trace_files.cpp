@@ -161,7 +161,7 @@ std::string TraceFiles::writeAsked(const std::function<bus::TraceDump()>& record
   {
     return last_asked_;
   }
-  const std::string path = write(record(), ASKED, error);
+  std::string path = write(record(), ASKED, error);
   if (!path.empty())
   {
     last_asked_ = path;

@@ -266,11 +266,11 @@ TEST_P(HalfAlive, costsTheGoodOneNextToNothing)
   const auto& frames = bus.frames();
   for (std::size_t index = 0; index + 1 < frames.size(); ++index)
   {
-    const bool asks = frames[index].source == simulation::FrameRecord::Source::MASTER && frames[index].bytes[0] == 2;
+    const bool asks = frames[index].source == simulation::FrameRecord::Source::Master && frames[index].bytes[0] == 2;
     if (asks)
     {
       std::size_t next = index + 1;
-      while (next + 1 < frames.size() && frames[next].source != simulation::FrameRecord::Source::MASTER)
+      while (next + 1 < frames.size() && frames[next].source != simulation::FrameRecord::Source::Master)
       {
         ++next;
       }

@@ -196,7 +196,7 @@ private:
     for (const simulation::FrameRecord& frame : bus_.frames())
     {
       const simulation::Bytes& bytes = frame.bytes;
-      const bool run = frame.source == simulation::FrameRecord::Source::MASTER && bytes.size() == 8 &&
+      const bool run = frame.source == simulation::FrameRecord::Source::Master && bytes.size() == 8 &&
                        bytes[1] == 0x05 && bytes[2] == 0 && bytes[3] == 0 && bytes[4] == 0xFF;
       if (!run)
       {

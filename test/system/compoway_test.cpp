@@ -45,7 +45,7 @@ std::size_t sent(const VirtualBus& bus, const std::string& text)
   for (const auto& frame : bus.frames())
   {
     const std::string bytes(frame.bytes.begin(), frame.bytes.end());
-    count += frame.source == simulation::FrameRecord::Source::MASTER && bytes.find(text) != std::string::npos ? 1 : 0;
+    count += frame.source == simulation::FrameRecord::Source::Master && bytes.find(text) != std::string::npos ? 1 : 0;
   }
   return count;
 }

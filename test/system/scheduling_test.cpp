@@ -267,7 +267,7 @@ TEST(Scheduling, deadInvertersCostAtMostFivePercentAndComeBackWithinThreeSeconds
   const auto& frames = bus.frames();
   for (std::size_t index = 0; index + 1 < frames.size(); ++index)
   {
-    const bool dead = frames[index].source == simulation::FrameRecord::Source::MASTER &&
+    const bool dead = frames[index].source == simulation::FrameRecord::Source::Master &&
                       (frames[index].bytes[0] == 2 || frames[index].bytes[0] == 4);
     probing += dead ? toSeconds(frames[index + 1].time - frames[index].time) : 0.0;
   }

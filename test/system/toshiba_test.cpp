@@ -365,11 +365,11 @@ std::size_t doubtfulReads(const VirtualBus& bus, std::size_t& lost)
   for (const simulation::FrameRecord& frame : bus.frames())
   {
     const bool one_word = frame.bytes.size() == 8 && frame.bytes[1] == 0x03 && frame.bytes[5] == 1;
-    if (frame.source == Source::DRIVE)
+    if (frame.source == Source::Drive)
     {
       waiting_since.reset();
     }
-    else if (frame.source == Source::MASTER)
+    else if (frame.source == Source::Master)
     {
       lost += waiting_since ? 1 : 0;
       barred_since = waiting_since ? waiting_since : barred_since;

@@ -17,28 +17,28 @@ namespace simulation
 /// What can go wrong with one exchange, in the order in which it is done to a reply.
 enum class FaultKind
 {
-  LOST_REQUEST,     ///< the drive doesn't hear the request: nothing is executed, nothing answered
-  LOST_REPLY,       ///< executed, but the reply never comes
-  EXCEPTION,        ///< not executed; answered with the exception `value`
-  FOREIGN_STATION,  ///< the reply carries another station number (its check sum is right)
-  FOREIGN_SHAPE,    ///< the reply belongs to another kind of request (its check sum is right)
-  DAMAGED,          ///< one byte of the reply is wrong
-  TRUNCATED,        ///< only the first `value` bytes of the reply come
-  NOISE,            ///< `value` random bytes come right before the reply
-  LATE              ///< the reply comes `value` seconds later
+  LostRequest,     ///< the drive doesn't hear the request: nothing is executed, nothing answered
+  LostReply,       ///< executed, but the reply never comes
+  Exception,       ///< not executed; answered with the exception `value`
+  ForeignStation,  ///< the reply carries another station number (its check sum is right)
+  ForeignShape,    ///< the reply belongs to another kind of request (its check sum is right)
+  Damaged,         ///< one byte of the reply is wrong
+  Truncated,       ///< only the first `value` bytes of the reply come
+  Noise,           ///< `value` random bytes come right before the reply
+  Late             ///< the reply comes `value` seconds later
 };
 
 /// What a request does to the drive. A frame that does both (17H) writes; a loop-back does neither.
 enum class Access
 {
-  READ,
-  WRITE,
-  NEITHER
+  Read,
+  Write,
+  Neither
 };
 
 struct Fault
 {
-  FaultKind kind = FaultKind::LOST_REPLY;
+  FaultKind kind = FaultKind::LostReply;
   double value = 0.0;              ///< see FaultKind
   int count = 1;                   ///< how many of the next exchanges it hits; 0: all until `until` or a clear
   std::optional<TimePoint> until;  ///< end of its life
@@ -51,7 +51,7 @@ struct Fault
 struct ExchangeFacts
 {
   std::optional<int> function;
-  Access access = Access::NEITHER;
+  Access access = Access::Neither;
 };
 
 /// The injected faults of one drive that wait for an exchange. No threads of its own.

@@ -14,37 +14,37 @@ namespace simulation
 {
 enum class Parity
 {
-  NONE,
-  EVEN,
-  ODD
+  None,
+  Even,
+  Odd
 };
 
 enum class Protocol
 {
-  MODBUS_RTU,
-  COMPOWAY_F
+  ModbusRtu,
+  CompowayF
 };
 
 /// @return as the scan list names it: "modbus_rtu"
 inline const char* nameOf(Protocol protocol)
 {
-  return protocol == Protocol::MODBUS_RTU ? "modbus_rtu" : "compoway_f";
+  return protocol == Protocol::ModbusRtu ? "modbus_rtu" : "compoway_f";
 }
 
 /// @return 'N', 'E' or 'O', as in 8N1
 inline char letterOf(Parity parity)
 {
-  return parity == Parity::NONE ? 'N' : (parity == Parity::EVEN ? 'E' : 'O');
+  return parity == Parity::None ? 'N' : (parity == Parity::Even ? 'E' : 'O');
 }
 
 /// How bytes and frames travel on the line.
 struct LineSettings
 {
   int baud_rate = 19200;  ///< [bit/s], > 0
-  Parity parity = Parity::NONE;
+  Parity parity = Parity::None;
   int data_bits = 8;  ///< 7 or 8
   int stop_bits = 1;  ///< 1 or 2
-  Protocol protocol = Protocol::MODBUS_RTU;
+  Protocol protocol = Protocol::ModbusRtu;
 
   /// "19200 baud 8N1"
   std::string text() const
@@ -56,7 +56,7 @@ struct LineSettings
   /// Time of one byte on the wire: start bit, data, parity, stop.
   Duration characterTime() const
   {
-    const int bits = 1 + data_bits + (parity == Parity::NONE ? 0 : 1) + stop_bits;
+    const int bits = 1 + data_bits + (parity == Parity::None ? 0 : 1) + stop_bits;
     return seconds(static_cast<double>(bits) / baud_rate);
   }
 
@@ -64,7 +64,7 @@ struct LineSettings
   /// Serial Line V1.02, 2.5.1.1). CompoWay/F: 2 ms (OMRON E5CN; the 3G3JE's pages don't say).
   Duration frameGap() const
   {
-    if (protocol == Protocol::COMPOWAY_F)
+    if (protocol == Protocol::CompowayF)
     {
       return std::chrono::milliseconds(2);
     }
@@ -82,7 +82,7 @@ struct LineSettings
   /// The silence by which a drive knows that a request is over; CompoWay/F knows it by its last byte.
   Duration frameEnd() const
   {
-    return protocol == Protocol::COMPOWAY_F ? Duration::zero() : frameGap();
+    return protocol == Protocol::CompowayF ? Duration::zero() : frameGap();
   }
 };
 }  // namespace simulation

@@ -24,14 +24,14 @@ namespace simulation
 /// What happens to a request whose first byte comes before the line was silent for LineSettings::frameGap().
 enum class GapRule
 {
-  ENFORCE,  ///< no drive hears it, as on a real line
-  IGNORE    ///< it is served and counted: for masters such as plain libmodbus that don't wait
+  Enforce,  ///< no drive hears it, as on a real line
+  Ignore    ///< it is served and counted: for masters such as plain libmodbus that don't wait
 };
 
 struct LineOptions
 {
   LineSettings settings;
-  GapRule gap = GapRule::ENFORCE;
+  GapRule gap = GapRule::Enforce;
   Duration gap_tolerance = std::chrono::microseconds(300);  ///< a request may come this much early
   /// Bytes for the master come out together for as long as this, never before their time; zero: a frame in one piece at
   /// its end (fastest, for virtual time).
@@ -51,13 +51,13 @@ struct FrameRecord
 {
   enum class Source
   {
-    MASTER,
-    DRIVE,
-    FOREIGN_MASTER,
-    NOISE
+    Master,
+    Drive,
+    ForeignMaster,
+    Noise
   };
   TimePoint time;  ///< start of its first byte
-  Source source = Source::MASTER;
+  Source source = Source::Master;
   std::string drive;    ///< who sent it, if a drive
   std::string station;  ///< as the frame says: "1"; CompoWay/F: "01", "XX"; empty: it doesn't say
   Bytes bytes;          ///< as on the wire: damage included
@@ -69,7 +69,7 @@ struct LineCounters
   std::uint64_t requests = 0;    ///< frames of the master
   std::uint64_t replies = 0;     ///< frames of drives
   std::uint64_t lost_gap = 0;    ///< requests lost to the missing gap
-  std::uint64_t early = 0;       ///< requests without the gap that were served (GapRule::IGNORE)
+  std::uint64_t early = 0;       ///< requests without the gap that were served (GapRule::Ignore)
   std::uint64_t damaged = 0;     ///< requests that arrived with a wrong check sum or length
   std::uint64_t collisions = 0;  ///< transmissions damaged by another
   std::uint64_t foreign = 0;     ///< frames of the second master
@@ -142,7 +142,7 @@ private:
   /// What one participant sends without a pause.
   struct Transmission
   {
-    FrameRecord::Source source = FrameRecord::Source::MASTER;
+    FrameRecord::Source source = FrameRecord::Source::Master;
     SimulatedDrive* drive = nullptr;
     std::vector<WireByte> bytes;
     bool for_master = true;     // comes out at the master's end

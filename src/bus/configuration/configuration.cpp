@@ -55,7 +55,7 @@ void readPort(const Section& section, BusConfig& bus)
 
 std::string readProtocol(const Section& section, const BusConfig& bus)
 {
-  const std::string protocol = section.choice("protocol", "modbus_rtu", { "modbus_rtu", "compoway_f" });
+  std::string protocol = section.choice("protocol", "modbus_rtu", { "modbus_rtu", "compoway_f" });
   if (protocol == "compoway_f" && bus.gateway)
   {
     section.fail("protocol", "does not go over " + bus.port, "modbus_rtu, or a serial device as port");
@@ -154,6 +154,7 @@ void checkSetting(const Section& section, const std::string& key, const Setting&
     return;
   }
   std::vector<std::string> names;
+  names.reserve(usable.size());
   for (const Setting& value : usable)
   {
     names.push_back(settingText(value));

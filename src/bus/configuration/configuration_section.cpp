@@ -294,6 +294,7 @@ std::int64_t Section::choice(const std::string& key, std::int64_t fallback,
   if (value->type != Value::Type::Integer || std::find(allowed.begin(), allowed.end(), value->integer) == allowed.end())
   {
     std::vector<std::string> names;
+    names.reserve(allowed.size());
     for (const std::int64_t number : allowed)
     {
       names.push_back(std::to_string(number));

@@ -735,13 +735,13 @@ Obstacles Inverter::obstacles() const
 /// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
 void Inverter::showError(TimePoint now, InverterStatus& status) const
 {
-  const bool away = status.communication_error && exchange_error_ != 0;
-  if (away && !command_error_.countsWhileOffline())
+  if (status.communication_error && exchange_error_ != 0 && !command_error_.countsWhileOffline())
   {
     status.error_id = exchange_error_;
     status.error_text = exchangeText();
+    return;
   }
-  else if (lost_writes.raised())
+  if (lost_writes.raised())
   {
     status.error_id = wire::ERROR_TIMEOUT;
     status.error_text = lost_writes.text();

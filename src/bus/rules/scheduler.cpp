@@ -535,28 +535,28 @@ Pick Scheduler::nothing(TimePoint now, const std::vector<InverterView>& views) c
 {
   Pick pick;
   pick.wake = now + seconds(LONGEST_SLEEP_S);
-  const auto wakeAt = [&](TimePoint time) {
+  const auto wake_at = [&](TimePoint time) {
     if (time > now)
     {
       pick.wake = std::min(pick.wake, time);
     }
   };
-  wakeAt(pause_until_);
-  wakeAt(next_probe_);
+  wake_at(pause_until_);
+  wake_at(next_probe_);
   for (std::size_t index = 0; index < views.size(); ++index)
   {
     const InverterView& view = views[index];
-    wakeAt(view.refresh_not_before);
-    wakeAt(view.stop_pending ? view.stop_not_before : TimePoint());
-    wakeAt(view.offline ? last_probe_[index] + seconds(PROBE_PERIOD_S) : TimePoint());
+    wake_at(view.refresh_not_before);
+    wake_at(view.stop_pending ? view.stop_not_before : TimePoint());
+    wake_at(view.offline ? last_probe_[index] + seconds(PROBE_PERIOD_S) : TimePoint());
     if (view.serve_by)
     {
-      wakeAt(*view.serve_by);
+      wake_at(*view.serve_by);
     }
   }
   for (const Ticket& ticket : tickets_)
   {
-    wakeAt(ticket.command.not_before);
+    wake_at(ticket.command.not_before);
   }
   return pick;
 }

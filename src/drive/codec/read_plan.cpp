@@ -21,6 +21,7 @@ struct Entry
 std::vector<Entry> sortedByPlace(const std::map<std::string, Item>& items)
 {
   std::vector<Entry> entries;
+  entries.reserve(items.size());
   for (const auto& [field, item] : items)
   {
     entries.push_back({ &field, &item });

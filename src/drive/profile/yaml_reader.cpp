@@ -236,7 +236,7 @@ std::optional<YamlCursor> YamlMap::find(const std::string& key)
 
 std::optional<YamlCursor> YamlMap::require(const std::string& key)
 {
-  const auto found = find(key);
+  auto found = find(key);
   if (!found && cursor_.isMap())
   {
     cursor_.problems().add(cursor_.value().where, cursor_.path().empty() ? key : cursor_.path() + "." + key,

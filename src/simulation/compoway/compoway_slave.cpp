@@ -124,7 +124,7 @@ Access CompowaySlave::accessOf(const Bytes& frame) const
   constexpr int ECHOBACK = 0x0801;
   const int service = functionOf(frame).value_or(ECHOBACK);
   const bool writes = service == WRITE_VARIABLES || service == OPERATION;
-  return service == ECHOBACK ? Access::NEITHER : writes ? Access::WRITE : Access::READ;
+  return service == ECHOBACK ? Access::Neither : writes ? Access::Write : Access::Read;
 }
 
 Answer CompowaySlave::reply(const std::string& body, bool exception) const
@@ -191,7 +191,7 @@ std::optional<Answer> CompowaySlave::answer(const Bytes& frame, TimePoint /*now*
   if (end_code == NORMAL_END)
   {
     result = execute(text, for_all);
-    end_code = result.garbage ? FORMAT_ERROR : (result.code == Response::NORMAL ? NORMAL_END : FINS_ERROR);
+    end_code = result.garbage ? FORMAT_ERROR : (result.code == Response::Normal ? NORMAL_END : FINS_ERROR);
   }
   if (for_all || result.silent)
   {
@@ -231,17 +231,17 @@ CompowaySlave::Result CompowaySlave::execute(const std::string& text, bool for_a
   }
   else if (service == OPERATION)
   {
-    result.code = text.size() > OPERATION_SIZE   ? Response::COMMAND_TOO_LONG
-                  : text.size() < OPERATION_SIZE ? Response::COMMAND_TOO_SHORT
+    result.code = text.size() > OPERATION_SIZE   ? Response::CommandTooLong
+                  : text.size() < OPERATION_SIZE ? Response::CommandTooShort
                                                  : operate(text.substr(SERVICE_SIZE));
   }
   else if (service != ATTRIBUTES && service != STATUS)
   {
-    result.code = Response::UNSUPPORTED_COMMAND;
+    result.code = Response::UnsupportedCommand;
   }
   else if (text.size() > SERVICE_SIZE)
   {
-    result.code = Response::COMMAND_TOO_LONG;
+    result.code = Response::CommandTooLong;
   }
   else
   {
@@ -260,7 +260,7 @@ CompowaySlave::Result CompowaySlave::echo(const std::string& text) const
                                 [this](char character) { return echoable(character, limits_.eight_bits); });
   if (data.size() > limits_.echo_bytes)
   {
-    result.code = Response::COMMAND_TOO_LONG;
+    result.code = Response::CommandTooLong;
     return result;
   }
   result.data = data;
@@ -271,36 +271,36 @@ CompowayResponse CompowaySlave::checkRead(const std::string& text) const
 {
   if (text.size() != DATA)
   {
-    return text.size() > DATA ? Response::COMMAND_TOO_LONG : Response::COMMAND_TOO_SHORT;
+    return text.size() > DATA ? Response::CommandTooLong : Response::CommandTooShort;
   }
   const std::uint8_t type = typeOf(text);
   const std::uint32_t address = numberAt(text, ADDRESS, 4);
   const std::uint32_t count = numberAt(text, COUNT, 4);
   if (!hasArea(type))
   {
-    return Response::AREA_TYPE_ERROR;
+    return Response::AreaTypeError;
   }
   if (!hasAddress(type, address))
   {
-    return Response::START_OUT_OF_RANGE;
+    return Response::StartOutOfRange;
   }
   if (count > limits_.elements)
   {
-    return Response::RESPONSE_TOO_LONG;
+    return Response::ResponseTooLong;
   }
   if (numberAt(text, BIT_POSITION, 2) != 0)
   {
-    return Response::PARAMETER_ERROR;
+    return Response::ParameterError;
   }
   const bool inside = count == 0 || hasAddress(type, address + count - 1);
-  return inside ? Response::NORMAL : Response::START_OUT_OF_RANGE;
+  return inside ? Response::Normal : Response::StartOutOfRange;
 }
 
 CompowaySlave::Result CompowaySlave::read(const std::string& text)
 {
   Result result;
   result.code = checkRead(text);
-  if (result.code != Response::NORMAL)
+  if (result.code != Response::Normal)
   {
     return result;
   }
@@ -317,26 +317,26 @@ CompowayResponse CompowaySlave::checkWrite(const std::string& text, std::vector<
 {
   if (text.size() < DATA)
   {
-    return Response::COMMAND_TOO_SHORT;
+    return Response::CommandTooShort;
   }
   const std::uint8_t type = typeOf(text);
   const std::uint32_t address = numberAt(text, ADDRESS, 4);
   const std::uint32_t count = numberAt(text, COUNT, 4);
   if (!hasArea(type))
   {
-    return Response::AREA_TYPE_ERROR;
+    return Response::AreaTypeError;
   }
   if (!hasAddress(type, address))
   {
-    return Response::START_OUT_OF_RANGE;
+    return Response::StartOutOfRange;
   }
   if (count > 0 && !hasAddress(type, address + count - 1))
   {
-    return Response::END_OUT_OF_RANGE;
+    return Response::EndOutOfRange;
   }
   if (text.size() != DATA + ELEMENT * count || count > limits_.elements)
   {
-    return Response::COUNT_MISMATCH;
+    return Response::CountMismatch;
   }
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -344,9 +344,9 @@ CompowayResponse CompowaySlave::checkWrite(const std::string& text, std::vector<
   }
   if (numberAt(text, BIT_POSITION, 2) != 0 || !accepts(type, address, values))
   {
-    return Response::PARAMETER_ERROR;
+    return Response::ParameterError;
   }
-  return readOnly(type) ? Response::READ_ONLY : Response::NORMAL;
+  return readOnly(type) ? Response::ReadOnly : Response::Normal;
 }
 
 CompowaySlave::Result CompowaySlave::write(const std::string& text)
@@ -354,7 +354,7 @@ CompowaySlave::Result CompowaySlave::write(const std::string& text)
   Result result;
   std::vector<std::uint32_t> values;
   result.code = checkWrite(text, values);
-  if (result.code == Response::NORMAL)
+  if (result.code == Response::Normal)
   {
     result.code = writeVariables(typeOf(text), numberAt(text, ADDRESS, 4), values);
   }

@@ -18,18 +18,18 @@ namespace simulation
 /// Response codes (MRES SRES) of FINS-mini: 3G3JE manual I548, section 3.
 enum class CompowayResponse : std::uint16_t
 {
-  NORMAL = 0x0000,
-  UNSUPPORTED_COMMAND = 0x0401,
-  COMMAND_TOO_LONG = 0x1001,
-  COMMAND_TOO_SHORT = 0x1002,
-  COUNT_MISMATCH = 0x1003,
-  PARAMETER_ERROR = 0x1100,
-  AREA_TYPE_ERROR = 0x1101,
-  START_OUT_OF_RANGE = 0x1103,
-  END_OUT_OF_RANGE = 0x1104,
-  RESPONSE_TOO_LONG = 0x110B,
-  OPERATION_ERROR = 0x2203,
-  READ_ONLY = 0x3003
+  Normal = 0x0000,
+  UnsupportedCommand = 0x0401,
+  CommandTooLong = 0x1001,
+  CommandTooShort = 0x1002,
+  CountMismatch = 0x1003,
+  ParameterError = 0x1100,
+  AreaTypeError = 0x1101,
+  StartOutOfRange = 0x1103,
+  EndOutOfRange = 0x1104,
+  ResponseTooLong = 0x110B,
+  OperationError = 0x2203,
+  ReadOnly = 0x3003
 };
 
 /// What a brand's CompoWay/F offers.
@@ -98,7 +98,7 @@ private:
   /// What the text of a request leads to.
   struct Result
   {
-    Response code = Response::NORMAL;
+    Response code = Response::Normal;
     std::string data;      // behind the response code
     bool silent = false;   // no reply at all
     bool garbage = false;  // a format error

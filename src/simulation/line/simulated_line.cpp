@@ -19,7 +19,7 @@ constexpr std::size_t LONGEST_UNFINISHED = 256;  // [bytes] more without an end 
 
 std::string stationOf(const Bytes& frame, Protocol protocol)
 {
-  if (protocol == Protocol::MODBUS_RTU)
+  if (protocol == Protocol::ModbusRtu)
   {
     return std::to_string(frame.front());
   }
@@ -98,7 +98,7 @@ void SimulatedLine::setConnected(bool connected, TimePoint now)
   advance(now);
   connected_ = connected;
   output_.clear();
-  Transmission* sending = openRequest(Source::MASTER);
+  Transmission* sending = openRequest(Source::Master);
   if (!connected && sending != nullptr)
   {
     std::vector<WireByte>& bytes = sending->bytes;
@@ -110,7 +110,7 @@ void SimulatedLine::setConnected(bool connected, TimePoint now)
 
 bool SimulatedLine::isRequest(const Transmission& transmission)
 {
-  return transmission.source == Source::MASTER || transmission.source == Source::FOREIGN_MASTER;
+  return transmission.source == Source::Master || transmission.source == Source::ForeignMaster;
 }
 
 TimePoint SimulatedLine::endOf(const Transmission& transmission) const
@@ -202,11 +202,11 @@ void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
   {
     return;
   }
-  Transmission* sending = openRequest(Source::MASTER);
+  Transmission* sending = openRequest(Source::Master);
   const bool next_frame = sending != nullptr && wholeForAny(valuesOf(*sending));
   const TimePoint start = sending == nullptr ? now : std::max(now, endOf(*sending));
   const bool in_time = sending != nullptr && now + options_.gap_tolerance >= endOf(*sending) + gap_;
-  if (next_frame && (in_time || options_.gap == GapRule::IGNORE))
+  if (next_frame && (in_time || options_.gap == GapRule::Ignore))
   {
     finishRequest(*sending);
     sending = nullptr;
@@ -214,7 +214,7 @@ void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
   if (sending == nullptr)
   {
     const TimePoint silent_since = std::max(last_activity_, last_seen_);
-    sending = &open(Source::MASTER);
+    sending = &open(Source::Master);
     sending->early = unfinished_.empty() && start + options_.gap_tolerance < silent_since + gap_;
     sending->for_master = echo_;
   }
@@ -239,7 +239,7 @@ void SimulatedLine::sendNoise(std::size_t count, TimePoint now)
   std::generate(bytes.begin(), bytes.end(), [this] { return random_.byte(); });
   if (!bytes.empty())
   {
-    append(open(Source::NOISE), bytes, now);
+    append(open(Source::Noise), bytes, now);
   }
 }
 
@@ -296,7 +296,7 @@ void SimulatedLine::processForeign(TimePoint time)
     const Bytes bytes = waiting_[i].bytes;
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
     ++counters_.foreign;
-    append(open(Source::FOREIGN_MASTER), bytes, time);
+    append(open(Source::ForeignMaster), bytes, time);
     return;
   }
 }
@@ -312,7 +312,7 @@ void SimulatedLine::processOwed(TimePoint time)
     owed.drive->advance(time);
     if (owed.drive->canSend() && !silent_ && !owed.bytes.empty())
     {
-      Transmission& reply = open(Source::DRIVE);
+      Transmission& reply = open(Source::Drive);
       reply.drive = owed.drive;
       append(reply, owed.bytes, owed.start);
     }
@@ -398,7 +398,7 @@ bool SimulatedLine::owes(const SimulatedDrive* drive) const
 /// @return false when they wait for more
 bool SimulatedLine::takeFrame(Bytes& bytes)
 {
-  if (options_.settings.protocol == Protocol::MODBUS_RTU)
+  if (options_.settings.protocol == Protocol::ModbusRtu)
   {
     return true;
   }
@@ -423,7 +423,7 @@ void SimulatedLine::finishRequest(Transmission& transmission)
     return;
   }
   transmission.served = true;
-  counters_.requests += transmission.source == Source::MASTER ? 1 : 0;
+  counters_.requests += transmission.source == Source::Master ? 1 : 0;
   Bytes frame = valuesOf(transmission);
   std::string remark;
   if (silent_)
@@ -434,7 +434,7 @@ void SimulatedLine::finishRequest(Transmission& transmission)
   {
     remark = "unfinished";
   }
-  else if ((transmission.early || transmission.joined) && options_.gap == GapRule::ENFORCE)
+  else if ((transmission.early || transmission.joined) && options_.gap == GapRule::Enforce)
   {
     remark = "lost: gap";
     ++counters_.lost_gap;
@@ -500,7 +500,7 @@ void SimulatedLine::serve(const Transmission& transmission, const Bytes& frame, 
 
 void SimulatedLine::finishReply(Transmission& transmission)
 {
-  const bool reply = transmission.source == Source::DRIVE;
+  const bool reply = transmission.source == Source::Drive;
   counters_.replies += reply ? 1 : 0;
   report(transmission, transmission.collided ? "damaged: collision" : (reply ? "" : "noise"));
 }

@@ -22,9 +22,9 @@ std::optional<LineSettings> settingsOf(int descriptor, const LineSettings& assum
   LineSettings settings = assumed;
   settings.baud_rate = static_cast<int>(terminal.c_ospeed);
   settings.stop_bits = (terminal.c_cflag & CSTOPB) != 0 ? 2 : 1;
-  settings.parity = (terminal.c_cflag & PARODD) != 0  ? Parity::ODD
-                    : (terminal.c_iflag & INPCK) != 0 ? Parity::EVEN
-                                                      : Parity::NONE;
+  settings.parity = (terminal.c_cflag & PARODD) != 0  ? Parity::Odd
+                    : (terminal.c_iflag & INPCK) != 0 ? Parity::Even
+                                                      : Parity::None;
   return settings;
 }
 
@@ -44,8 +44,8 @@ void setTerminal(int descriptor, const LineSettings& settings)
   terminal.c_ispeed = static_cast<speed_t>(settings.baud_rate);
   terminal.c_ospeed = static_cast<speed_t>(settings.baud_rate);
   terminal.c_cflag |= settings.stop_bits == 2 ? CSTOPB : 0U;
-  terminal.c_cflag |= settings.parity == Parity::ODD ? PARODD : 0U;
-  terminal.c_iflag |= settings.parity == Parity::NONE ? 0U : static_cast<tcflag_t>(INPCK);
+  terminal.c_cflag |= settings.parity == Parity::Odd ? PARODD : 0U;
+  terminal.c_iflag |= settings.parity == Parity::None ? 0U : static_cast<tcflag_t>(INPCK);
   ioctl(descriptor, TCSETS2, &terminal);
 }
 }  // namespace simulation

@@ -100,7 +100,7 @@ Access ModbusSlave::accessOf(const Bytes& frame) const
   constexpr int LOOPBACK = 0x08;
   constexpr int LAST_READ = 0x04;
   const int function = functionOf(frame).value_or(LOOPBACK);
-  return function == LOOPBACK ? Access::NEITHER : function <= LAST_READ ? Access::READ : Access::WRITE;
+  return function == LOOPBACK ? Access::Neither : function <= LAST_READ ? Access::Read : Access::Write;
 }
 
 Answer ModbusSlave::exceptionAnswer(const Bytes& frame, int code)
@@ -148,7 +148,7 @@ std::optional<Answer> ModbusSlave::answer(const Bytes& frame, TimePoint /*now*/,
   {
     return std::nullopt;
   }
-  if (exception != ModbusException::NONE)
+  if (exception != ModbusException::None)
   {
     return exceptionAnswer(frame, static_cast<int>(exception));
   }
@@ -159,7 +159,7 @@ ModbusException ModbusSlave::execute(const Bytes& frame, Bytes& reply)
 {
   if (limits_.functions.count(frame[1]) == 0)
   {
-    return ModbusException::FUNCTION_NOT_SUPPORTED;
+    return ModbusException::FunctionNotSupported;
   }
   switch (frame[1])
   {
@@ -177,7 +177,7 @@ ModbusException ModbusSlave::execute(const Bytes& frame, Bytes& reply)
         return limits_.loop_back_refusal;
       }
       appendHead(frame, reply, 6);
-      return ModbusException::NONE;
+      return ModbusException::None;
     case WRITE_COILS:
       return executeWriteCoils(frame, reply);
     case WRITE_REGISTERS:
@@ -185,7 +185,7 @@ ModbusException ModbusSlave::execute(const Bytes& frame, Bytes& reply)
     case READ_WRITE:
       return executeReadWrite(frame, reply);
     default:
-      return ModbusException::FUNCTION_NOT_SUPPORTED;
+      return ModbusException::FunctionNotSupported;
   }
 }
 
@@ -194,11 +194,11 @@ ModbusException ModbusSlave::executeReadCoils(const Bytes& frame, Bytes& reply)
   const std::uint16_t count = modbusWord(frame, 4);
   if (count == 0 || count > limits_.coils)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   std::vector<bool> values;
   const ModbusException exception = readCoils(modbusWord(frame, 2), count, values);
-  if (exception != ModbusException::NONE)
+  if (exception != ModbusException::None)
   {
     return exception;
   }
@@ -209,7 +209,7 @@ ModbusException ModbusSlave::executeReadCoils(const Bytes& frame, Bytes& reply)
   }
   reply.push_back(static_cast<std::uint8_t>(packed.size()));
   reply.insert(reply.end(), packed.begin(), packed.end());
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ModbusSlave::executeWriteCoil(const Bytes& frame, Bytes& reply)
@@ -217,7 +217,7 @@ ModbusException ModbusSlave::executeWriteCoil(const Bytes& frame, Bytes& reply)
   const std::uint16_t value = modbusWord(frame, 4);
   if (value != 0xFF00U && value != 0x0000U)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   appendHead(frame, reply, 6);
   return writeCoils(modbusWord(frame, 2), { value != 0 });
@@ -229,7 +229,7 @@ ModbusException ModbusSlave::executeWriteCoils(const Bytes& frame, Bytes& reply)
   // More data bytes than the coils need are accepted: a real MX2 took 2 bytes for 5 coils.
   if (count == 0 || count > limits_.coils || frame[6] * 8U < count)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   std::vector<bool> values;
   for (std::size_t i = 0; i < count; ++i)
@@ -244,11 +244,11 @@ ModbusException ModbusSlave::executeReadRegisters(std::uint16_t wire, std::uint1
 {
   if (count == 0 || count > limits_.read_registers)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   std::vector<std::uint16_t> values;
   const ModbusException exception = readRegisters(wire, count, values);
-  if (exception != ModbusException::NONE)
+  if (exception != ModbusException::None)
   {
     return exception;
   }
@@ -257,7 +257,7 @@ ModbusException ModbusSlave::executeReadRegisters(std::uint16_t wire, std::uint1
   {
     appendModbusWord(reply, value);
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ModbusSlave::executeWriteRegister(const Bytes& frame, Bytes& reply)
@@ -271,7 +271,7 @@ ModbusException ModbusSlave::executeWriteRegisters(const Bytes& frame, Bytes& re
   const std::uint16_t count = modbusWord(frame, 4);
   if (count == 0 || count > limits_.write_registers || frame[6] != count * 2U)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   appendHead(frame, reply, 6);
   return writeRegisters(modbusWord(frame, 2), words(frame, 7, count), WRITE_REGISTERS);
@@ -284,11 +284,11 @@ ModbusException ModbusSlave::executeReadWrite(const Bytes& frame, Bytes& reply)
   if (count == 0 || count > limits_.write_registers || frame[10] != count * 2U || read_count == 0 ||
       read_count > limits_.read_registers)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   // Modbus V1.1b3, 6.17: the write comes before the read.
   const ModbusException exception = writeRegisters(modbusWord(frame, 6), words(frame, 11, count), READ_WRITE);
-  return exception != ModbusException::NONE ? exception : executeReadRegisters(modbusWord(frame, 2), read_count, reply);
+  return exception != ModbusException::None ? exception : executeReadRegisters(modbusWord(frame, 2), read_count, reply);
 }
 }  // namespace simulation
 }  // namespace inverter_bus

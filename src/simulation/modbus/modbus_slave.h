@@ -19,14 +19,14 @@ namespace simulation
 /// the MX2 manual's chapter 6; 26h: Hitachi SJ700D. A brand with others casts its number.
 enum class ModbusException : std::uint8_t
 {
-  NONE = 0x00,
-  FUNCTION_NOT_SUPPORTED = 0x01,
-  ADDRESS_NOT_FOUND = 0x02,
-  FORMAT_NOT_ACCEPTABLE = 0x03,
-  VALUE_OUT_OF_RANGE = 0x21,
-  NOT_ALLOWED_NOW = 0x22,
-  READ_ONLY = 0x23,
-  EEPROM_BUSY = 0x26
+  None = 0x00,
+  FunctionNotSupported = 0x01,
+  AddressNotFound = 0x02,
+  FormatNotAcceptable = 0x03,
+  ValueOutOfRange = 0x21,
+  NotAllowedNow = 0x22,
+  ReadOnly = 0x23,
+  EepromBusy = 0x26
 };
 
 /// What a brand's Modbus offers.
@@ -38,7 +38,7 @@ struct ModbusLimits
   std::uint16_t read_registers = 0;            ///< most registers of one read
   std::uint16_t write_registers = 0;           ///< most registers of one write
   /// To an 08h with another sub-code than 0000h.
-  ModbusException loop_back_refusal = ModbusException::FORMAT_NOT_ACCEPTABLE;
+  ModbusException loop_back_refusal = ModbusException::FormatNotAcceptable;
 };
 
 /// A Modbus RTU slave: check sum, lengths, function codes and limits; a brand adds its coils and registers. Addresses

@@ -107,14 +107,14 @@ std::string cutLine(SimulatedBus& bus, CommandWords& words, TimePoint now)
 
 Bytes foreignFrame(const std::string& text, bool raw, Protocol protocol)
 {
-  if (!raw && protocol == Protocol::COMPOWAY_F && !text.empty())
+  if (!raw && protocol == Protocol::CompowayF && !text.empty())
   {
     return compowayFrame(text);
   }
   const std::optional<Bytes> frame = fromHex(text);
   if (!frame || frame->empty())
   {
-    const std::string body = protocol == Protocol::COMPOWAY_F ? ", or a body such as 010000601 without raw" : "";
+    const std::string body = protocol == Protocol::CompowayF ? ", or a body such as 010000601 without raw" : "";
     throw CommandError("frame " + text + " (allowed: hexadecimal bytes such as 01 03 10 00 00 02" + body + ")");
   }
   return raw ? *frame : withModbusCrc(*frame);
@@ -205,11 +205,11 @@ void takeScope(CommandWords& words, Fault& fault, TimePoint now)
     }
     else if (words.takeIf("writes"))
     {
-      fault.access = Access::WRITE;
+      fault.access = Access::Write;
     }
     else if (words.takeIf("reads"))
     {
-      fault.access = Access::READ;
+      fault.access = Access::Read;
     }
     else if (words.takeIf("longer"))
     {
@@ -221,7 +221,7 @@ void takeScope(CommandWords& words, Fault& fault, TimePoint now)
                          " (allowed: count N, for S, function F, writes, reads, longer BYTES)");
     }
   }
-  const bool before_reply = fault.kind == FaultKind::LOST_REQUEST || fault.kind == FaultKind::EXCEPTION;
+  const bool before_reply = fault.kind == FaultKind::LostRequest || fault.kind == FaultKind::Exception;
   if (before_reply && fault.longer_than > 0)
   {
     throw CommandError("longer BYTES is for faults of a reply, not for lost_request and exception");
@@ -242,10 +242,10 @@ FaultKind takeForeignKind(CommandWords& words)
 {
   if (words.takeIf("shape"))
   {
-    return FaultKind::FOREIGN_SHAPE;
+    return FaultKind::ForeignShape;
   }
   words.takeIf("station");
-  return FaultKind::FOREIGN_STATION;
+  return FaultKind::ForeignStation;
 }
 
 std::string powerCycle(SimulatedDrive& drive, CommandWords& words, TimePoint now)
@@ -263,21 +263,21 @@ std::map<std::string, DriveAction> faultActions()
 {
   return {
     { "damaged",
-      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::DAMAGED, 0); } },
+      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::Damaged, 0); } },
     { "truncated",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
         const double bytes = w.takeNumberOr(4, "bytes", 0, 256);
-        return spoil(d, w, now, FaultKind::TRUNCATED, bytes);
+        return spoil(d, w, now, FaultKind::Truncated, bytes);
       } },
     { "noise",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
         const double bytes = w.takeNumberOr(3, "bytes", 1, 256);
-        return spoil(d, w, now, FaultKind::NOISE, bytes);
+        return spoil(d, w, now, FaultKind::Noise, bytes);
       } },
     { "late",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
         const double delay = w.takeNumber("delay", 0.0, 3600.0);
-        return spoil(d, w, now, FaultKind::LATE, delay);
+        return spoil(d, w, now, FaultKind::Late, delay);
       } },
     { "foreign",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
@@ -287,12 +287,12 @@ std::map<std::string, DriveAction> faultActions()
     { "exception",
       [](SimulatedDrive& d, CommandWords& w, TimePoint now) {
         const double code = w.takeNumber("exception code", 1, d.largestException());
-        return spoil(d, w, now, FaultKind::EXCEPTION, code);
+        return spoil(d, w, now, FaultKind::Exception, code);
       } },
     { "lost_request",
-      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::LOST_REQUEST, 0); } },
+      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::LostRequest, 0); } },
     { "lost_reply",
-      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::LOST_REPLY, 0); } },
+      [](SimulatedDrive& d, CommandWords& w, TimePoint now) { return spoil(d, w, now, FaultKind::LostReply, 0); } },
   };
 }
 
@@ -441,7 +441,7 @@ std::string run(SimulatedBus& bus, CommandWords& words, TimePoint now)
   }
   if (target == "bus")
   {
-    const std::string answer = find(busActions(), words.take("command"))(bus, words, now);
+    std::string answer = find(busActions(), words.take("command"))(bus, words, now);
     words.finish();
     return answer;
   }
@@ -451,7 +451,7 @@ std::string run(SimulatedBus& bus, CommandWords& words, TimePoint now)
     throw CommandError("unknown target " + target + " (allowed: help list bus" + names(bus, false) + ")");
   }
   drive->advance(now);
-  const std::string answer = find(driveActions(), words.take("command"))(*drive, words, now);
+  std::string answer = find(driveActions(), words.take("command"))(*drive, words, now);
   words.finish();
   return answer;
 }

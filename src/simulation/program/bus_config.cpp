@@ -26,16 +26,16 @@ LineSettings readLine(const Value& root)
 {
   LineSettings line;
   const Value* protocol = find(&root, "protocol");
-  const std::string name = protocol == nullptr ? nameOf(Protocol::MODBUS_RTU) : toText(protocol, "protocol");
-  if (name != nameOf(Protocol::MODBUS_RTU) && name != nameOf(Protocol::COMPOWAY_F))
+  const std::string name = protocol == nullptr ? nameOf(Protocol::ModbusRtu) : toText(protocol, "protocol");
+  if (name != nameOf(Protocol::ModbusRtu) && name != nameOf(Protocol::CompowayF))
   {
     refuse("protocol", protocol, "modbus_rtu, compoway_f");
   }
-  if (name == nameOf(Protocol::COMPOWAY_F))
+  if (name == nameOf(Protocol::CompowayF))
   {
-    line.protocol = Protocol::COMPOWAY_F;
+    line.protocol = Protocol::CompowayF;
     line.data_bits = 7;
-    line.parity = Parity::EVEN;
+    line.parity = Parity::Even;
     line.stop_bits = 2;
   }
   for (const char* key : { "baud_rate", "parity", "data_bits", "stop_bits" })

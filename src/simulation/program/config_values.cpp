@@ -146,7 +146,7 @@ Parity toParity(const Value* value, const std::string& place)
   {
     refuse(place, value, "none, even, odd");
   }
-  return parity == "none" ? Parity::NONE : (parity == "even" ? Parity::EVEN : Parity::ODD);
+  return parity == "none" ? Parity::None : (parity == "even" ? Parity::Even : Parity::Odd);
 }
 
 bool readLineKey(const std::string& key, const Value& value, const std::string& place, LineSettings& line)

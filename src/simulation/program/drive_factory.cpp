@@ -53,9 +53,9 @@ std::unique_ptr<SimulatedDrive> makeVfs11(const DriveOptions& options)
 const std::vector<Model>& models()
 {
   static const std::vector<Model> MODELS = {
-    { "omron_mx2", Protocol::MODBUS_RTU, makeMx2 },           { "omron_rx", Protocol::MODBUS_RTU, makeRx },
-    { "toshiba_vfs15", Protocol::MODBUS_RTU, makeVfs15 },     { "toshiba_vfs11", Protocol::MODBUS_RTU, makeVfs11 },
-    { "teco_7200ma", Protocol::MODBUS_RTU, make<TecoDrive> }, { "omron_3g3je", Protocol::COMPOWAY_F, make<JeDrive> },
+    { "omron_mx2", Protocol::ModbusRtu, makeMx2 },           { "omron_rx", Protocol::ModbusRtu, makeRx },
+    { "toshiba_vfs15", Protocol::ModbusRtu, makeVfs15 },     { "toshiba_vfs11", Protocol::ModbusRtu, makeVfs11 },
+    { "teco_7200ma", Protocol::ModbusRtu, make<TecoDrive> }, { "omron_3g3je", Protocol::CompowayF, make<JeDrive> },
   };
   return MODELS;
 }

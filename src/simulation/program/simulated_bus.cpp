@@ -27,13 +27,13 @@ const char* senderOf(FrameRecord::Source source)
 {
   switch (source)
   {
-    case FrameRecord::Source::MASTER:
+    case FrameRecord::Source::Master:
       return "master";
-    case FrameRecord::Source::DRIVE:
+    case FrameRecord::Source::Drive:
       return "drive";
-    case FrameRecord::Source::FOREIGN_MASTER:
+    case FrameRecord::Source::ForeignMaster:
       return "foreign";
-    case FrameRecord::Source::NOISE:
+    case FrameRecord::Source::Noise:
       return "noise";
   }
   return "";

@@ -161,12 +161,12 @@ std::optional<Answer> SimulatedDrive::handle(const Bytes& frame, TimePoint now)
 std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const ExchangeFacts& exchange,
                                             std::vector<Fault> faults, TimePoint now)
 {
-  if (find(faults, FaultKind::LOST_REQUEST) != nullptr)
+  if (find(faults, FaultKind::LostRequest) != nullptr)
   {
     ++counters_.unheard;
     return std::nullopt;
   }
-  const Fault* exception = find(faults, FaultKind::EXCEPTION);
+  const Fault* exception = find(faults, FaultKind::Exception);
   bool good = true;
   std::optional<Answer> reply = exception != nullptr
                                     ? std::optional<Answer>(exceptionAnswer(frame, static_cast<int>(exception->value)))
@@ -189,7 +189,7 @@ std::optional<Answer> SimulatedDrive::serve(const Bytes& frame, const ExchangeFa
   {
     spoil(*reply, fault);
   }
-  if (find(faults, FaultKind::LOST_REPLY) != nullptr)
+  if (find(faults, FaultKind::LostReply) != nullptr)
   {
     return std::nullopt;
   }
@@ -201,30 +201,30 @@ void SimulatedDrive::spoil(Answer& answer, const Fault& fault)
   Bytes& bytes = answer.bytes;
   switch (fault.kind)
   {
-    case FaultKind::DAMAGED:
+    case FaultKind::Damaged:
       bytes[random_.below(bytes.size())] ^= random_.damage();
       break;
-    case FaultKind::TRUNCATED:
+    case FaultKind::Truncated:
       bytes.resize(std::min(bytes.size() - 1, static_cast<std::size_t>(std::max(0.0, fault.value))));
       break;
-    case FaultKind::NOISE:
+    case FaultKind::Noise:
       for (int i = 0; i < static_cast<int>(fault.value); ++i)
       {
         bytes.insert(bytes.begin(), random_.byte());
       }
       break;
-    case FaultKind::LATE:
+    case FaultKind::Late:
       answer.delay += seconds(fault.value);
       break;
-    case FaultKind::FOREIGN_STATION:
+    case FaultKind::ForeignStation:
       bytes = foreignReply(bytes, true);
       break;
-    case FaultKind::FOREIGN_SHAPE:
+    case FaultKind::ForeignShape:
       bytes = foreignReply(bytes, false);
       break;
-    case FaultKind::LOST_REQUEST:
-    case FaultKind::LOST_REPLY:
-    case FaultKind::EXCEPTION:
+    case FaultKind::LostRequest:
+    case FaultKind::LostReply:
+    case FaultKind::Exception:
       break;
   }
 }

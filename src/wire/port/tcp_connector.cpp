@@ -78,7 +78,7 @@ TcpConnector::Progress TcpConnector::step(tcp::socket& socket, std::string& reas
   const TimePoint until = steady_clock::now() + LONGEST_STEP;
   if (!attempt_)
   {
-    attempt_.emplace();
+    attempt_ = Attempt();
     attempt_->deadline = steady_clock::now() + LONGEST_OPENING;
   }
   if (attempt_->addresses.empty() && !lookUp(until))

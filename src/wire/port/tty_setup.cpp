@@ -128,7 +128,7 @@ void unlockTty(int tty, bool pseudo_terminal)
 
 std::string configureTty(int tty, const SerialSettings& settings, bool pseudo_terminal, const std::string& sysfs)
 {
-  const std::string reason = pseudo_terminal ? "" : configureDriver(tty, settings);
+  std::string reason = pseudo_terminal ? "" : configureDriver(tty, settings);
   if (!reason.empty())
   {
     return reason;

@@ -43,7 +43,7 @@ std::string ttyFolder(const std::string& device, const std::string& sysfs)
   }
   const std::string real_path(path);
   const std::string number = numberOf(device);
-  const std::string by_name = sysfs + "/class/tty/" + real_path.substr(real_path.rfind('/') + 1);
+  std::string by_name = sysfs + "/class/tty/" + real_path.substr(real_path.rfind('/') + 1);
   std::string number_there;
   std::ifstream(by_name + "/dev") >> number_there;
   if (isFolder(by_name) && (number_there.empty() || number_there == number))

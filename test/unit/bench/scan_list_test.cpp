@@ -109,7 +109,7 @@ TEST(BenchScanList, serialOptionsAreThoseOfTheDrives)
 {
   simulation::SerialOptions options;
   options.baud_rate = 9600;
-  options.parity = simulation::Parity::EVEN;
+  options.parity = simulation::Parity::Even;
   const auto config = readScanList(valueOf(ONE), "line.yaml", PROFILES, options).config;
   EXPECT_EQ("19200 baud 8N1", config.line.text());
   EXPECT_EQ("9600 baud 8E1", config.drives.at(0).options.line.text());

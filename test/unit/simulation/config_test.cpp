@@ -41,7 +41,7 @@ TEST(SimulatedBusConfig, listWithDefaults)
       "defaults: {drive: omron_rx, rated_current: 9.5}\n"
       "scan_list: [{name: a, node: 3, max_velocity: 1}, {name: b, node: 4, drive: omron_mx2}]");
   EXPECT_EQ(9600, config.line.baud_rate);
-  EXPECT_EQ(Parity::EVEN, config.line.parity);
+  EXPECT_EQ(Parity::Even, config.line.parity);
   EXPECT_EQ(2, config.line.stop_bits);
   ASSERT_EQ(2U, config.drives.size());
   EXPECT_EQ("omron_rx", config.drives[0].model);

@@ -318,12 +318,12 @@ TEST(SimulatedJeLine, sendsSevenBits)
 TEST(SimulatedJe, configuration)
 {
   const BusConfig config = busConfigFromText(oneJe());
-  EXPECT_EQ(Protocol::COMPOWAY_F, config.line.protocol);
+  EXPECT_EQ(Protocol::CompowayF, config.line.protocol);
   EXPECT_EQ(7, config.line.data_bits);
-  EXPECT_EQ(Parity::EVEN, config.line.parity);
+  EXPECT_EQ(Parity::Even, config.line.parity);
   EXPECT_EQ(2, config.line.stop_bits);
   const std::string list = "scan_list: [{name: j, node: 1, drive: ";
-  EXPECT_EQ(Parity::NONE,
+  EXPECT_EQ(Parity::None,
             busConfigFromText("protocol: compoway_f\nparity: none\n" + list + "omron_3g3je}]").line.parity);
   EXPECT_EQ(
       "drive: omron_3g3je of j speaks compoway_f, the bus speaks modbus_rtu (allowed: drives of one protocol, "

@@ -24,7 +24,7 @@ TEST(SimulatedLine, characterAndGapTimes)
   LineSettings line;
   EXPECT_NEAR(10.0 / 19200, toSeconds(line.characterTime()), 1e-9);
   EXPECT_NEAR(35.0 / 19200, toSeconds(line.frameGap()), 1e-8);
-  line.parity = Parity::EVEN;
+  line.parity = Parity::Even;
   line.stop_bits = 2;
   EXPECT_NEAR(12.0 / 19200, toSeconds(line.characterTime()), 1e-9);
   line.baud_rate = 38400;
@@ -106,7 +106,7 @@ TEST(SimulatedLine, gapCountsFromWhenTheMasterCouldSeeTheReply)
 TEST(SimulatedLine, earlyRequestIsServedAndCountedOnDemand)
 {
   LineOptions options;
-  options.gap = GapRule::IGNORE;
+  options.gap = GapRule::Ignore;
   TestBus bus(TWO, options);
   bus.bus.send(request("01 03 10 00 00 04"), bus.now);
   bus.listen();
@@ -121,7 +121,7 @@ TEST(SimulatedLine, twoRequestsBackToBackAreOneBrokenFrame)
   bus.bus.send(request("01 03 10 00 00 04"), bus.now + std::chrono::milliseconds(1));
   EXPECT_EQ("", bus.listen());
   LineOptions options;
-  options.gap = GapRule::IGNORE;
+  options.gap = GapRule::Ignore;
   TestBus patient(TWO, options);
   patient.bus.send(request("00 05 00 00 00 00"), patient.now);
   patient.bus.send(request("01 03 10 00 00 04"), patient.now + std::chrono::milliseconds(1));

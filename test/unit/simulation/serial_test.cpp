@@ -30,7 +30,7 @@ std::string two(const std::string& simulation)
          simulation + "}\n";
 }
 
-LineSettings serial(int baud_rate, Parity parity = Parity::NONE)
+LineSettings serial(int baud_rate, Parity parity = Parity::None)
 {
   LineSettings settings;
   settings.baud_rate = baud_rate;
@@ -97,7 +97,7 @@ TEST(SimulatedSerial, stopBitsAreOnlySilence)
 TEST(SimulatedSerial, whatTheMasterChangesToCounts)
 {
   TestBus bus(two("b: {baud_rate: 9600, parity: even}"));
-  bus.bus.setMaster(serial(9600, Parity::EVEN), bus.now);
+  bus.bus.setMaster(serial(9600, Parity::Even), bus.now);
   EXPECT_EQ("", bus.ask(READ_STATUS));
   EXPECT_NE("", bus.ask(READ_STATUS_OF_2));
   EXPECT_THAT(bus.command("bus show"), HasSubstr("master=9600/8E1"));
@@ -196,7 +196,7 @@ TEST(SimulatedTerminal, isSetAsItsClientWouldUntilOneComes)
 {
   Terminal terminal;
   ASSERT_GE(terminal.far, 0);
-  for (const LineSettings& settings : { serial(76800), serial(9600, Parity::EVEN), serial(4800, Parity::ODD) })
+  for (const LineSettings& settings : { serial(76800), serial(9600, Parity::Even), serial(4800, Parity::Odd) })
   {
     setTerminal(terminal.far, settings);
     EXPECT_EQ(settings.text(), settingsOf(terminal.near, LineSettings())->text());

@@ -117,13 +117,13 @@ ModbusException HitachiDrive::readCoils(std::uint16_t wire, std::uint16_t count,
 {
   if (wire + 1 > LAST)
   {
-    return ModbusException::ADDRESS_NOT_FOUND;
+    return ModbusException::AddressNotFound;
   }
   for (int number = wire + 1; number <= wire + count; ++number)
   {
     values.push_back(coil(number));  // 0 past the last one
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException HitachiDrive::writeCoils(std::uint16_t wire, const std::vector<bool>& values)
@@ -133,7 +133,7 @@ ModbusException HitachiDrive::writeCoils(std::uint16_t wire, const std::vector<b
   {
     if (!writableCoil(number))
     {
-      return number >= FIRST_STATUS && number <= LAST ? ModbusException::READ_ONLY : ModbusException::ADDRESS_NOT_FOUND;
+      return number >= FIRST_STATUS && number <= LAST ? ModbusException::ReadOnly : ModbusException::AddressNotFound;
     }
   }
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -141,7 +141,7 @@ ModbusException HitachiDrive::writeCoils(std::uint16_t wire, const std::vector<b
     setCoil(first + static_cast<int>(i), values[i]);
   }
   control();
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 }  // namespace simulation
 }  // namespace inverter_bus

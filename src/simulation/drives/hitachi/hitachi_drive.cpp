@@ -169,10 +169,10 @@ void HitachiDrive::heard(std::uint8_t function)
   // Register 0902h: the next 06h goes to the EEPROM too; any other request ends that (MX2-SYS p. 313).
   store_this_write_ = store_next_write_ && function == 0x06;
   store_next_write_ = false;
-  const bool by_timeout = hold_ == Hold::TIMEOUT_RAMP || hold_ == Hold::TIMEOUT_FREE_RUN;
+  const bool by_timeout = hold_ == Hold::TimeoutRamp || hold_ == Hold::TimeoutFreeRun;
   if (by_timeout && options_.restart_after_timeout)
   {
-    setHold(Hold::NONE);
+    setHold(Hold::None);
   }
 }
 
@@ -250,10 +250,10 @@ void HitachiDrive::onTimeout()
       control();
       break;
     case 3:  // free run, no trip
-      setHold(Hold::TIMEOUT_FREE_RUN);
+      setHold(Hold::TimeoutFreeRun);
       break;
     case 4:  // decelerate, no trip
-      setHold(Hold::TIMEOUT_RAMP);
+      setHold(Hold::TimeoutRamp);
       break;
     default:
       break;
@@ -263,7 +263,7 @@ void HitachiDrive::onTimeout()
 void HitachiDrive::setHold(Hold hold)
 {
   // Without a RUN there is nothing to hold back: the next one starts the motor.
-  hold_ = coils_[COIL_RUN] ? hold : Hold::NONE;
+  hold_ = coils_[COIL_RUN] ? hold : Hold::None;
   control();
 }
 
@@ -275,7 +275,7 @@ bool HitachiDrive::runCommanded() const
   }
   const std::uint32_t limit = memory_.ram(code_.b035);  // 0 both directions, 1 forward only, 2 reverse only
   const bool direction_allowed = limit == 0 || (limit == 2) == coils_[COIL_REVERSE];
-  return coils_[COIL_RUN] && memory_.ram(code_.a002) == SOURCE_MODBUS && hold_ == Hold::NONE && !trip_after_stop_ &&
+  return coils_[COIL_RUN] && memory_.ram(code_.a002) == SOURCE_MODBUS && hold_ == Hold::None && !trip_after_stop_ &&
          direction_allowed;
 }
 
@@ -325,13 +325,13 @@ bool HitachiDrive::freeRunInput() const
 void HitachiDrive::control()
 {
   motor_.setRamps({ maximumFrequency(), panelValue(code_.f002), panelValue(code_.f003), panelValue(code_.b082) });
-  if (!powered() || tripped_ || safe_stop_ || hold_ == Hold::TIMEOUT_FREE_RUN || freeRunInput())
+  if (!powered() || tripped_ || safe_stop_ || hold_ == Hold::TimeoutFreeRun || freeRunInput())
   {
     motor_.cut();
     return;
   }
   const bool run = runCommanded();
-  const bool stop_by_free_run = memory_.ram(code_.b091) == 1 && hold_ != Hold::TIMEOUT_RAMP && !trip_after_stop_;
+  const bool stop_by_free_run = memory_.ram(code_.b091) == 1 && hold_ != Hold::TimeoutRamp && !trip_after_stop_;
   if (!run && stop_by_free_run)
   {
     motor_.cut();
@@ -397,7 +397,7 @@ void HitachiDrive::losePower()
   pid_feedback_ = 0;
   tripped_ = false;
   trip_after_stop_ = false;
-  hold_ = Hold::NONE;
+  hold_ = Hold::None;
   store_next_write_ = false;
   busy_until_ = clock();
   watchdog_.reset();
@@ -448,7 +448,7 @@ void HitachiDrive::setCoil(int number, bool value)
   coils_[index] = value;
   if (number == COIL_RUN && !value)
   {
-    hold_ = Hold::NONE;
+    hold_ = Hold::None;
   }
   const bool external_trip = number == 0x0003;
   const bool reset = number == 0x0004;

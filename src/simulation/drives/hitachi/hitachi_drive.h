@@ -97,10 +97,10 @@ private:
   /// Why the motor stays stopped although the bus says RUN; ends when RUN goes off.
   enum class Hold
   {
-    NONE,
-    STOP_KEY,
-    TIMEOUT_RAMP,
-    TIMEOUT_FREE_RUN
+    None,
+    StopKey,
+    TimeoutRamp,
+    TimeoutFreeRun
   };
 
   /// What one write request is about to change; applied only when all of it is allowed.
@@ -148,7 +148,7 @@ private:
   void buildMonitors();
   void buildTripMonitors();
   void buildModelMonitors();
-  void addMonitor(std::uint16_t number, int words, std::function<double()> raw);
+  void addMonitor(std::uint16_t number, int words, const std::function<double()>& raw);
   std::optional<std::uint16_t> readRegister(std::uint16_t number) const;
   ModbusException stage(std::uint16_t number, std::uint16_t value, Change& change) const;
   ModbusException check(const Change& change) const;
@@ -168,7 +168,7 @@ private:
   std::uint16_t pid_feedback_ = 0;
   std::optional<double> panel_;  // [Hz] the panel is in command
   std::optional<std::pair<std::uint32_t, std::uint32_t>> sources_before_panel_;
-  Hold hold_ = Hold::NONE;
+  Hold hold_ = Hold::None;
   bool trip_after_stop_ = false;
   bool safe_stop_ = false;
   bool tripped_ = false;

@@ -65,7 +65,7 @@ Refusal HitachiDrive::pressStopKey(TimePoint now)
   {
     return "the STOP key is disabled by b087 = 1";
   }
-  setHold(Hold::STOP_KEY);
+  setHold(Hold::StopKey);
   return std::nullopt;
 }
 
@@ -102,7 +102,7 @@ Refusal HitachiDrive::setBusy(TimePoint until, TimePoint now)
 Refusal HitachiDrive::setParameter(const std::string& code, double value, TimePoint now)
 {
   advance(now);
-  const Refusal refusal = setAtPanel(memory_, model_.name, code, value);
+  Refusal refusal = setAtPanel(memory_, model_.name, code, value);
   control();
   return refusal;
 }
@@ -134,7 +134,7 @@ void HitachiDrive::describeMotor(KeyValues& values) const
   add("trips", std::to_string(trip_count_));
   add("command_source", std::to_string(memory_.ram(code_.a002)));
   flag("panel", panel_.has_value());
-  flag("held", hold_ != Hold::NONE);
+  flag("held", hold_ != Hold::None);
   flag("safe_stop", safe_stop_);
   flag("busy", busy());
   const bool off = watchdogTimeout() == Duration::zero();

@@ -41,7 +41,7 @@ std::uint16_t wordOf(std::uint32_t raw, bool high)
 }
 }  // namespace
 
-void HitachiDrive::addMonitor(std::uint16_t number, int words, std::function<double()> raw)
+void HitachiDrive::addMonitor(std::uint16_t number, int words, const std::function<double()>& raw)
 {
   for (int word = 0; word < words; ++word)
   {
@@ -49,6 +49,7 @@ void HitachiDrive::addMonitor(std::uint16_t number, int words, std::function<dou
   }
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): a table, one line per register
 void HitachiDrive::buildMonitors()
 {
   const auto zero = [] { return 0.0; };
@@ -118,7 +119,7 @@ void HitachiDrive::buildModelMonitors()
 
 void HitachiDrive::buildTripMonitors()
 {
-  for (std::uint16_t block = 0; block < trips_.size(); ++block)
+  for (std::size_t block = 0; block < trips_.size(); ++block)
   {
     const std::uint16_t number = static_cast<std::uint16_t>(FIRST_TRIP_BLOCK + block * TRIP_BLOCK_SIZE);
     const auto at = [number](int offset) { return static_cast<std::uint16_t>(number + offset); };
@@ -178,11 +179,11 @@ ModbusException HitachiDrive::readRegisters(std::uint16_t wire, std::uint16_t co
         number <= 0xFFFFU ? readRegister(static_cast<std::uint16_t>(number)) : std::nullopt;
     if (!value)
     {
-      return ModbusException::ADDRESS_NOT_FOUND;
+      return ModbusException::AddressNotFound;
     }
     values.push_back(*value);
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException HitachiDrive::stage(std::uint16_t number, std::uint16_t value, Change& change) const
@@ -193,32 +194,32 @@ ModbusException HitachiDrive::stage(std::uint16_t number, std::uint16_t value, C
     const Parameter& info = memory_.info(index);
     const auto staged = change.parameters.emplace(index, memory_.ram(index)).first;
     staged->second = withWord(info.words == 2 ? staged->second : 0U, info.words == 2 && number == info.number, value);
-    return ModbusException::NONE;
+    return ModbusException::None;
   }
   switch (number)
   {
     case REFERENCE_HIGH:
     case REFERENCE_LOW:
       change.reference = withWord(change.reference.value_or(reference_), number == REFERENCE_HIGH, value);
-      return ModbusException::NONE;
+      return ModbusException::None;
     case PID_FEEDBACK:
       change.pid_feedback = value;
-      return ModbusException::NONE;
+      return ModbusException::None;
     case ENTER:
       change.enter = value;
-      return ModbusException::NONE;
+      return ModbusException::None;
     case WRITE_MODE:
       change.write_mode = value;
-      return ModbusException::NONE;
+      return ModbusException::None;
     default:
       break;
   }
   if (number == COMMAND_MIRROR && model_.coil_mirror)
   {
     change.coils = value;
-    return ModbusException::NONE;
+    return ModbusException::None;
   }
-  return readRegister(number) ? ModbusException::READ_ONLY : ModbusException::ADDRESS_NOT_FOUND;
+  return readRegister(number) ? ModbusException::ReadOnly : ModbusException::AddressNotFound;
 }
 
 ModbusException HitachiDrive::checkParameter(Index index, std::uint32_t raw) const
@@ -229,7 +230,7 @@ ModbusException HitachiDrive::checkParameter(Index index, std::uint32_t raw) con
   const bool undervoltage = tripped_ && trips_.front().code == 9;
   if (!memory_.accepts(index, raw))
   {
-    return ModbusException::VALUE_OUT_OF_RANGE;
+    return ModbusException::ValueOutOfRange;
   }
   const bool base_above_maximum =
       (index == code_.a003 && raw > memory_.ram(code_.a004)) || (index == code_.a004 && raw < memory_.ram(code_.a003));
@@ -237,25 +238,25 @@ ModbusException HitachiDrive::checkParameter(Index index, std::uint32_t raw) con
   const bool speed_above_maximum = info.code >= "A020" && info.code <= "A035" && hertz > maximumFrequency();
   if (base_above_maximum || speed_above_maximum)
   {
-    return ModbusException::VALUE_OUT_OF_RANGE;
+    return ModbusException::ValueOutOfRange;
   }
   if (locked || undervoltage || (motor_.turning() && !info.while_running))
   {
-    return ModbusException::NOT_ALLOWED_NOW;
+    return ModbusException::NotAllowedNow;
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException HitachiDrive::check(const Change& change) const
 {
   if (busy() && (!change.parameters.empty() || change.enter || change.write_mode))
   {
-    return model_.busy_exception ? ModbusException::EEPROM_BUSY : ModbusException::NOT_ALLOWED_NOW;
+    return model_.busy_exception ? ModbusException::EepromBusy : ModbusException::NotAllowedNow;
   }
   for (const auto& parameter : change.parameters)
   {
     const ModbusException exception = checkParameter(parameter.first, parameter.second);
-    if (exception != ModbusException::NONE)
+    if (exception != ModbusException::None)
     {
       return exception;
     }
@@ -264,14 +265,14 @@ ModbusException HitachiDrive::check(const Change& change) const
   const bool feedback_too_high = change.pid_feedback && *change.pid_feedback > 10000;  // 0.01 %
   if (reference_too_high || feedback_too_high)
   {
-    return ModbusException::VALUE_OUT_OF_RANGE;
+    return ModbusException::ValueOutOfRange;
   }
   const bool undervoltage = tripped_ && trips_.front().code == 9;
   if (change.enter && (motor_.turning() || undervoltage))
   {
-    return ModbusException::NOT_ALLOWED_NOW;
+    return ModbusException::NotAllowedNow;
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 void HitachiDrive::apply(const Change& change, bool to_eeprom)
@@ -316,14 +317,14 @@ ModbusException HitachiDrive::writeRegisters(std::uint16_t wire, const std::vect
   {
     const std::size_t number = wire + 1U + i;
     const ModbusException exception = number <= 0xFFFFU ? stage(static_cast<std::uint16_t>(number), values[i], change)
-                                                        : ModbusException::ADDRESS_NOT_FOUND;
-    if (exception != ModbusException::NONE)
+                                                        : ModbusException::AddressNotFound;
+    if (exception != ModbusException::None)
     {
       return exception;
     }
   }
   const ModbusException exception = check(change);
-  if (exception == ModbusException::NONE)
+  if (exception == ModbusException::None)
   {
     apply(change, store_this_write_);
     control();

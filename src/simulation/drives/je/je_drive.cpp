@@ -81,7 +81,7 @@ void JeDrive::commission()
 LineSettings JeDrive::serialInEffect() const
 {
   LineSettings serial;
-  serial.protocol = Protocol::COMPOWAY_F;
+  serial.protocol = Protocol::CompowayF;
   serial.baud_rate = static_cast<int>(memory_.ram(code_.p16) * 100);
   serial.data_bits = static_cast<int>(memory_.ram(code_.p17));
   serial.stop_bits = static_cast<int>(memory_.ram(code_.p18));
@@ -127,7 +127,7 @@ bool JeDrive::busCommands() const
 
 bool JeDrive::busRuns() const
 {
-  return run_ != Run::OFF && busCommands() && !stop_key_;
+  return run_ != Run::Off && busCommands() && !stop_key_;
 }
 
 double JeDrive::wantedFrequency() const
@@ -139,7 +139,7 @@ double JeDrive::wantedFrequency() const
   const double upper = std::min(panelValue(memory_, code_.p06), panelValue(memory_, code_.p07));
   const double reference = std::max(panelValue(memory_, code_.reference), panelValue(memory_, code_.p08));
   const double hertz = busRuns() ? std::min(upper, reference) : 0.0;
-  return run_ == Run::REVERSE ? -hertz : hertz;
+  return run_ == Run::Reverse ? -hertz : hertz;
 }
 
 void JeDrive::control()
@@ -157,7 +157,7 @@ void JeDrive::control()
 void JeDrive::setRun(Run run)
 {
   run_ = run;
-  stop_key_ = stop_key_ && run != Run::OFF;
+  stop_key_ = stop_key_ && run != Run::Off;
   control();
 }
 
@@ -165,7 +165,7 @@ void JeDrive::losePower()
 {
   run_before_power_cut_ = run_;
   power_cut_ = clock();
-  run_ = Run::OFF;
+  run_ = Run::Off;
   stop_key_ = false;
   tripped_ = false;
   ram_mode_ = false;
@@ -246,7 +246,7 @@ Refusal JeDrive::pressStopKey(TimePoint now)
   else
   {
     // Without a RUN there is nothing to hold back: the next one starts the motor.
-    stop_key_ = run_ != Run::OFF;
+    stop_key_ = run_ != Run::Off;
   }
   control();
   return std::nullopt;
@@ -279,7 +279,7 @@ Refusal JeDrive::setBusy(TimePoint until, TimePoint now)
 Refusal JeDrive::setParameter(const std::string& code, double value, TimePoint now)
 {
   advance(now);
-  const Refusal refusal = setAtPanel(memory_, MODEL, code, value);
+  Refusal refusal = setAtPanel(memory_, MODEL, code, value);
   control();
   return refusal;
 }
@@ -296,7 +296,7 @@ const Motor& JeDrive::motor() const
 
 bool JeDrive::runCommand() const
 {
-  return run_ != Run::OFF;
+  return run_ != Run::Off;
 }
 
 void JeDrive::describeMotor(KeyValues& values) const

@@ -85,9 +85,9 @@ private:
 
   enum class Run
   {
-    OFF,
-    FORWARD,
-    REVERSE
+    Off,
+    Forward,
+    Reverse
   };
 
   // je_drive.cpp: commissioning, control, by hand
@@ -112,8 +112,8 @@ private:
   ParameterMemory memory_;
   Motor motor_;
   std::map<std::string, std::string> operations_;  // name by code
-  Run run_ = Run::OFF;
-  Run run_before_power_cut_ = Run::OFF;
+  Run run_ = Run::Off;
+  Run run_before_power_cut_ = Run::Off;
   TimePoint power_cut_;
   bool ram_mode_ = false;
   int area_ = 0;

@@ -10,7 +10,7 @@ namespace simulation
 std::vector<Parameter> jeParameters()
 {
   constexpr std::uint16_t PANEL = 0x1000;  // from here on no address of C3: the bus doesn't reach it
-  constexpr auto panel = [](int place) { return static_cast<std::uint16_t>(PANEL + place); };
+  const auto panel = [](int place) { return static_cast<std::uint16_t>(PANEL + place); };
   return {
     { "P01", 0x0000, 1, 1, 0, 25, 10, false, 0 },       // rated motor current [A]
     { "P02", 0x0001, 1, 1, 0, 999, 200, false, 0 },     // alarm of the operating time [kh]

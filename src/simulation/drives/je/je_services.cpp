@@ -118,14 +118,14 @@ CompowayResponse JeDrive::readVariables(std::uint8_t type, std::uint32_t address
 {
   if (type == INITIAL_SETTINGS && area_ == 0 && !options_.area_1_readable)
   {
-    return Response::OPERATION_ERROR;
+    return Response::OperationError;
   }
   for (std::uint32_t place = address; place < address + count; ++place)
   {
     values.push_back(type == INITIAL_SETTINGS ? memory_.ram(memory_.at(static_cast<std::uint16_t>(place)))
                                               : monitor(place));
   }
-  return Response::NORMAL;
+  return Response::Normal;
 }
 
 bool JeDrive::accepts(std::uint8_t type, std::uint32_t address, const std::vector<std::uint32_t>& values) const
@@ -147,7 +147,7 @@ CompowayResponse JeDrive::writeVariables(std::uint8_t type, std::uint32_t addres
 {
   if (clock() < busy_until_ || (type == INITIAL_SETTINGS && area_ == 0))
   {
-    return Response::OPERATION_ERROR;
+    return Response::OperationError;
   }
   for (std::size_t i = 0; i < values.size(); ++i)
   {
@@ -163,7 +163,7 @@ CompowayResponse JeDrive::writeVariables(std::uint8_t type, std::uint32_t addres
     }
   }
   control();
-  return Response::NORMAL;
+  return Response::Normal;
 }
 
 CompowayResponse JeDrive::operate(const std::string& code)
@@ -172,11 +172,11 @@ CompowayResponse JeDrive::operate(const std::string& code)
   const std::string name = found == operations_.end() ? "" : found->second;
   if (name == "run_forward" || name == "run_reverse")
   {
-    return changeRun(name == "run_forward" ? Run::FORWARD : Run::REVERSE);
+    return changeRun(name == "run_forward" ? Run::Forward : Run::Reverse);
   }
   if (name == "stop")
   {
-    return changeRun(Run::OFF);
+    return changeRun(Run::Off);
   }
   if (name == "fault_reset")
   {
@@ -190,38 +190,38 @@ CompowayResponse JeDrive::operate(const std::string& code)
   {
     return changeArea(name == "setup_area_0" ? 0 : 1);
   }
-  return Response::PARAMETER_ERROR;
+  return Response::ParameterError;
 }
 
 CompowayResponse JeDrive::changeRun(Run run)
 {
-  if (!busCommands() || (run != Run::OFF && area_ == 1))
+  if (!busCommands() || (run != Run::Off && area_ == 1))
   {
-    return Response::OPERATION_ERROR;
+    return Response::OperationError;
   }
   setRun(run);
-  return Response::NORMAL;
+  return Response::Normal;
 }
 
 CompowayResponse JeDrive::resetTrip()
 {
   tripped_ = false;
   control();  // a RUN that is still on restarts the motor here
-  return Response::NORMAL;
+  return Response::Normal;
 }
 
 CompowayResponse JeDrive::changeWriteMode(bool ram)
 {
   if (area_ == 1)
   {
-    return Response::OPERATION_ERROR;
+    return Response::OperationError;
   }
   if (ram_mode_ && !ram && memory_.ramChanges() > 0)
   {
     memory_.store();
   }
   ram_mode_ = ram;
-  return Response::NORMAL;
+  return Response::Normal;
 }
 
 CompowayResponse JeDrive::changeArea(int area)
@@ -229,9 +229,9 @@ CompowayResponse JeDrive::changeArea(int area)
   area_ = area;
   if (area == 1)
   {
-    setRun(Run::OFF);
+    setRun(Run::Off);
   }
-  return Response::NORMAL;
+  return Response::Normal;
 }
 
 std::string JeDrive::controllerStatus() const

@@ -46,7 +46,7 @@ ModbusLimits limits()
   limits.read_registers = 16;
   limits.write_registers = 16;
   // The manual prints the answer 88 01 to a loop test, and not what causes it.
-  limits.loop_back_refusal = ModbusException::FUNCTION_NOT_SUPPORTED;
+  limits.loop_back_refusal = ModbusException::FunctionNotSupported;
   return limits;
 }
 }  // namespace
@@ -110,7 +110,7 @@ std::optional<LineSettings> TecoDrive::serialInEffect() const
   serial.baud_rate = baud->first;
   serial.parity = static_cast<Parity>(memory_.ram(code_.sn38));
   // A character always has 11 bits: 8N2, 8E1 or 8O1 (p. 5).
-  serial.stop_bits = serial.parity == Parity::NONE ? 2 : 1;
+  serial.stop_bits = serial.parity == Parity::None ? 2 : 1;
   return serial;
 }
 
@@ -133,10 +133,10 @@ bool TecoDrive::takesBroadcast(const Bytes& frame) const
 void TecoDrive::heard(std::uint8_t /*function*/)
 {
   watchdog_.feed(clock());
-  alarm_ = Alarm::OFF;
-  if (hold_ != Hold::STOP_KEY && options_.restart_after_timeout)
+  alarm_ = Alarm::Off;
+  if (hold_ != Hold::StopKey && options_.restart_after_timeout)
   {
-    setHold(Hold::NONE);
+    setHold(Hold::None);
   }
 }
 
@@ -148,14 +148,14 @@ Duration TecoDrive::timeout() const
 std::optional<TimePoint> TecoDrive::powerOnDeadline() const
 {
   const bool by_bus = memory_.ram(code_.sn04) == FROM_BUS || memory_.ram(code_.sn05) == FROM_BUS;
-  const bool waiting = powered() && by_bus && !watchdog_.started() && alarm_ == Alarm::OFF;
+  const bool waiting = powered() && by_bus && !watchdog_.started() && alarm_ == Alarm::Off;
   return waiting ? std::optional<TimePoint>(powered_since_ + seconds(POWER_ON_TIME)) : std::nullopt;
 }
 
 void TecoDrive::raiseAlarm()
 {
   constexpr std::uint32_t RUN_ON = 3;  // Sn-39
-  alarm_ = memory_.ram(code_.sn39) == RUN_ON ? Alarm::FLASHING : Alarm::LIT;
+  alarm_ = memory_.ram(code_.sn39) == RUN_ON ? Alarm::Flashing : Alarm::Lit;
   ++alarms_;
 }
 
@@ -165,13 +165,13 @@ void TecoDrive::onTimeout()
   switch (memory_.ram(code_.sn39))
   {
     case 0:
-      setHold(Hold::TIMEOUT_RAMP);
+      setHold(Hold::TimeoutRamp);
       break;
     case 1:
-      setHold(Hold::TIMEOUT_COAST);
+      setHold(Hold::TimeoutCoast);
       break;
     case 2:
-      setHold(Hold::TIMEOUT_FAST_RAMP);
+      setHold(Hold::TimeoutFastRamp);
       break;
     default:  // runs on
       break;
@@ -222,7 +222,7 @@ bool TecoDrive::runBit(std::uint16_t command) const
 
 bool TecoDrive::busRuns() const
 {
-  return runBit(command_) && memory_.ram(code_.sn04) == FROM_BUS && hold_ == Hold::NONE;
+  return runBit(command_) && memory_.ram(code_.sn04) == FROM_BUS && hold_ == Hold::None;
 }
 
 bool TecoDrive::busSetsFrequency() const
@@ -242,9 +242,9 @@ double TecoDrive::wantedFrequency() const
 
 void TecoDrive::control()
 {
-  const double stop_time = panelValue(memory_, hold_ == Hold::TIMEOUT_FAST_RAMP ? code_.bn04 : code_.bn02);
+  const double stop_time = panelValue(memory_, hold_ == Hold::TimeoutFastRamp ? code_.bn04 : code_.bn02);
   motor_.setRamps({ panelValue(memory_, code_.cn02), panelValue(memory_, code_.bn01), stop_time, 0.5 });
-  if (!powered() || tripped_ || hold_ == Hold::TIMEOUT_COAST)
+  if (!powered() || tripped_ || hold_ == Hold::TimeoutCoast)
   {
     motor_.cut();
     return;
@@ -258,7 +258,7 @@ void TecoDrive::setCommand(std::uint16_t command)
   command_ = command;
   if (!runBit(command))
   {
-    hold_ = Hold::NONE;
+    hold_ = Hold::None;
   }
   if ((rising & EXTERNAL_FAULT_BIT) != 0 && !tripped_)
   {
@@ -274,7 +274,7 @@ void TecoDrive::setCommand(std::uint16_t command)
 void TecoDrive::setHold(Hold hold)
 {
   // Without a RUN there is nothing to hold back: the next one starts the motor.
-  hold_ = runBit(command_) ? hold : Hold::NONE;
+  hold_ = runBit(command_) ? hold : Hold::None;
   control();
 }
 
@@ -298,8 +298,8 @@ void TecoDrive::losePower()
   reference_ = 0;
   setting_error_ = false;
   tripped_ = false;
-  hold_ = Hold::NONE;
-  alarm_ = Alarm::OFF;
+  hold_ = Hold::None;
+  alarm_ = Alarm::Off;
   busy_until_ = clock();
   watchdog_.reset();
   memory_.reload();
@@ -370,7 +370,7 @@ Refusal TecoDrive::pressStopKey(TimePoint now)
     control();
     return std::nullopt;
   }
-  setHold(Hold::STOP_KEY);
+  setHold(Hold::StopKey);
   return std::nullopt;
 }
 
@@ -401,7 +401,7 @@ Refusal TecoDrive::setBusy(TimePoint until, TimePoint now)
 Refusal TecoDrive::setParameter(const std::string& code, double value, TimePoint now)
 {
   advance(now);
-  const Refusal refusal = setAtPanel(memory_, MODEL, code, value);
+  Refusal refusal = setAtPanel(memory_, MODEL, code, value);
   control();
   return refusal;
 }
@@ -435,11 +435,11 @@ void TecoDrive::describeMotor(KeyValues& values) const
   add("trip", std::to_string(tripped_ ? trip_ : 0));
   add("last_trip", std::to_string(trip_));
   add("trips", std::to_string(trips_));
-  add("alarm", alarm_ == Alarm::OFF ? "off" : (alarm_ == Alarm::LIT ? "lit" : "flashing"));
+  add("alarm", alarm_ == Alarm::Off ? "off" : (alarm_ == Alarm::Lit ? "lit" : "flashing"));
   add("alarms", std::to_string(alarms_));
   add("command_source", std::to_string(memory_.ram(code_.sn04)));
   flag("panel", panel_.has_value());
-  flag("held", hold_ != Hold::NONE);
+  flag("held", hold_ != Hold::None);
   flag("busy", clock() < busy_until_);
   const bool off = timeout() == Duration::zero();
   add("watchdog", off ? "off" : (watchdog_.expired() ? "expired" : (watchdog_.started() ? "running" : "waiting")));

@@ -86,18 +86,18 @@ private:
   /// Why the motor stays stopped although the bus says RUN; ends when RUN goes off.
   enum class Hold
   {
-    NONE,
-    STOP_KEY,
-    TIMEOUT_RAMP,
-    TIMEOUT_FAST_RAMP,
-    TIMEOUT_COAST
+    None,
+    StopKey,
+    TimeoutRamp,
+    TimeoutFastRamp,
+    TimeoutCoast
   };
 
   enum class Alarm
   {
-    OFF,
-    LIT,
-    FLASHING
+    Off,
+    Lit,
+    Flashing
   };
 
   // teco_drive.cpp: commissioning, control, supervision
@@ -129,14 +129,14 @@ private:
   Motor motor_;
   CommWatchdog watchdog_;
   TimePoint powered_since_;
-  Alarm alarm_ = Alarm::OFF;
+  Alarm alarm_ = Alarm::Off;
   std::uint64_t alarms_ = 0;
   std::uint16_t command_ = 0;    // 0000H
   std::uint16_t reference_ = 0;  // 0001H [0.01 Hz]
   bool setting_error_ = false;   // the last write was out of its limits
   std::optional<double> panel_;  // [Hz] the panel is in command
   std::pair<std::uint32_t, std::uint32_t> sources_before_panel_{};
-  Hold hold_ = Hold::NONE;
+  Hold hold_ = Hold::None;
   bool tripped_ = false;
   int trip_ = 0;  // the last one
   std::uint64_t trips_ = 0;

@@ -11,7 +11,7 @@ std::vector<Parameter> tecoParameters()
 {
   constexpr bool RUN = true;    // may be written while the motor runs
   constexpr bool STOP = false;  // only at rest
-  constexpr auto at = [](int offset) { return static_cast<std::uint16_t>(TECO_PARAMETERS + offset); };
+  const auto at = [](int offset) { return static_cast<std::uint16_t>(TECO_PARAMETERS + offset); };
   return {
     { "Bn-01", at(0x00), 1, 1, 1, 60000, 100, RUN, 0 },    // acceleration [s]
     { "Bn-02", at(0x01), 1, 1, 1, 60000, 100, RUN, 0 },    // deceleration [s]

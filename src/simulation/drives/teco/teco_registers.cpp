@@ -27,12 +27,12 @@ std::uint16_t rounded(double value)
 
 ModbusException TecoDrive::readCoils(std::uint16_t /*wire*/, std::uint16_t /*count*/, std::vector<bool>& /*values*/)
 {
-  return ModbusException::FUNCTION_NOT_SUPPORTED;
+  return ModbusException::FunctionNotSupported;
 }
 
 ModbusException TecoDrive::writeCoils(std::uint16_t /*wire*/, const std::vector<bool>& /*values*/)
 {
-  return ModbusException::FUNCTION_NOT_SUPPORTED;
+  return ModbusException::FunctionNotSupported;
 }
 
 bool TecoDrive::isMonitor(std::uint32_t wire) const
@@ -102,39 +102,39 @@ ModbusException TecoDrive::readRegisters(std::uint16_t wire, std::uint16_t count
     const std::optional<std::uint16_t> value = readRegister(wire + i);
     if (!value)
     {
-      return ModbusException::ADDRESS_NOT_FOUND;
+      return ModbusException::AddressNotFound;
     }
     values.push_back(*value);
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException TecoDrive::checkWrite(std::uint32_t wire, std::uint16_t value) const
 {
   if (!readRegister(wire))
   {
-    return ModbusException::ADDRESS_NOT_FOUND;
+    return ModbusException::AddressNotFound;
   }
   if (wire == COMMAND)
   {
-    return ModbusException::NONE;
+    return ModbusException::None;
   }
   if (wire == FREQUENCY)
   {
     const bool fits = value <= panelValue(memory_, code_.cn02) * 100.0 + 0.5;
-    return fits ? ModbusException::NONE : ModbusException::VALUE_OUT_OF_RANGE;
+    return fits ? ModbusException::None : ModbusException::ValueOutOfRange;
   }
   if (isMonitor(wire))
   {
-    return ModbusException::NOT_ALLOWED_NOW;  // 22H: can't be written
+    return ModbusException::NotAllowedNow;  // 22H: can't be written
   }
   const Index index = memory_.at(static_cast<std::uint16_t>(wire));
   if (!memory_.accepts(index, value))
   {
-    return ModbusException::VALUE_OUT_OF_RANGE;
+    return ModbusException::ValueOutOfRange;
   }
   const bool locked = motor_.turning() && !memory_.info(index).while_running;
-  return locked || clock() < busy_until_ ? ModbusException::NOT_ALLOWED_NOW : ModbusException::NONE;
+  return locked || clock() < busy_until_ ? ModbusException::NotAllowedNow : ModbusException::None;
 }
 
 ModbusException TecoDrive::writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
@@ -144,9 +144,9 @@ ModbusException TecoDrive::writeRegisters(std::uint16_t wire, const std::vector<
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const ModbusException exception = checkWrite(static_cast<std::uint32_t>(wire + i), values[i]);
-    if (exception != ModbusException::NONE)
+    if (exception != ModbusException::None)
     {
-      setting_error_ = exception == ModbusException::VALUE_OUT_OF_RANGE;
+      setting_error_ = exception == ModbusException::ValueOutOfRange;
       return exception;
     }
   }
@@ -168,7 +168,7 @@ ModbusException TecoDrive::writeRegisters(std::uint16_t wire, const std::vector<
     }
   }
   setCommand(command.value_or(command_));  // last: a RUN starts with the frequency of the same frame
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 }  // namespace simulation
 }  // namespace inverter_bus

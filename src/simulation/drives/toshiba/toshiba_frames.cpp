@@ -73,7 +73,7 @@ std::optional<Answer> ToshibaVfs15::answer(const Bytes& frame, TimePoint now, bo
   }
   else if (fixedFieldsWrong(frame))
   {
-    reply = exceptionAnswer(frame, static_cast<int>(ModbusException::FORMAT_NOT_ACCEPTABLE));
+    reply = exceptionAnswer(frame, static_cast<int>(ModbusException::FormatNotAcceptable));
   }
   else
   {
@@ -101,11 +101,11 @@ Answer ToshibaVfs15::identify(const Bytes& frame)
 {
   if (frame[2] != MEI_DEVICE_ID)
   {
-    return exceptionAnswer(frame, static_cast<int>(ModbusException::FUNCTION_NOT_SUPPORTED));
+    return exceptionAnswer(frame, static_cast<int>(ModbusException::FunctionNotSupported));
   }
   if (frame[3] > LAST_DEVICE_ID_CODE || frame[4] != 0)
   {
-    return exceptionAnswer(frame, static_cast<int>(ModbusException::FORMAT_NOT_ACCEPTABLE));
+    return exceptionAnswer(frame, static_cast<int>(ModbusException::FormatNotAcceptable));
   }
   // Code, conformity, nothing follows, first object of a next frame, objects.
   Bytes reply{ frame[0], frame[1], frame[2], frame[3], 0x01, 0x00, 0x00, 0x03 };

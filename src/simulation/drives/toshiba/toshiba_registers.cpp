@@ -40,12 +40,12 @@ bool rampTime(Number number)
 
 ModbusException ToshibaVfs15::readCoils(std::uint16_t, std::uint16_t, std::vector<bool>&)
 {
-  return ModbusException::FUNCTION_NOT_SUPPORTED;
+  return ModbusException::FunctionNotSupported;
 }
 
 ModbusException ToshibaVfs15::writeCoils(std::uint16_t, const std::vector<bool>&)
 {
-  return ModbusException::FUNCTION_NOT_SUPPORTED;
+  return ModbusException::FunctionNotSupported;
 }
 
 bool ToshibaVfs15::isSlot(Number number) const
@@ -92,14 +92,14 @@ ModbusException ToshibaVfs15::readSlots(Number number, std::uint16_t count, std:
 {
   if (number != BLOCK_READ || count < 2 || count > in_effect_.read_slots.size())
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   for (std::size_t slot = 0; slot < count; ++slot)
   {
     const std::uint32_t code = in_effect_.read_slots[slot];
     values.push_back(code == 0 ? static_cast<std::uint16_t>(0) : *readRegister(READ_SLOT_CODES[code]));
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ToshibaVfs15::readRegisters(std::uint16_t wire, std::uint16_t count, std::vector<std::uint16_t>& values)
@@ -115,7 +115,7 @@ ModbusException ToshibaVfs15::readRegisters(std::uint16_t wire, std::uint16_t co
         number <= 0xFFFFU ? readRegister(static_cast<Number>(number)) : std::nullopt;
     if (!value && i == 0)
     {
-      return ModbusException::ADDRESS_NOT_FOUND;
+      return ModbusException::AddressNotFound;
     }
     if (value && refusesAccess(static_cast<Number>(number), false))
     {
@@ -123,7 +123,7 @@ ModbusException ToshibaVfs15::readRegisters(std::uint16_t wire, std::uint16_t co
     }
     values.push_back(value.value_or(NO_SUCH_NUMBER));
   }
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ToshibaVfs15::target(Number number, const std::vector<std::uint16_t>& values,
@@ -132,11 +132,11 @@ ModbusException ToshibaVfs15::target(Number number, const std::vector<std::uint1
   if (values.size() == 1)
   {
     writes.push_back({ number, values[0] });
-    return ModbusException::NONE;
+    return ModbusException::None;
   }
   if (number != BLOCK_WRITE)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   for (std::size_t slot = 0; slot < values.size(); ++slot)
   {
@@ -147,7 +147,7 @@ ModbusException ToshibaVfs15::target(Number number, const std::vector<std::uint1
     }
   }
   // The text of p. 33 lets the drive ignore what no slot takes, the example of p. 34 refuses it.
-  return writes.empty() ? NOT_EXECUTABLE : ModbusException::NONE;
+  return writes.empty() ? NOT_EXECUTABLE : ModbusException::None;
 }
 
 ModbusException ToshibaVfs15::writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
@@ -157,9 +157,9 @@ ModbusException ToshibaVfs15::writeRegisters(std::uint16_t wire, const std::vect
   ModbusException exception = target(wire, values, writes);
   for (const Write& write : writes)
   {
-    exception = exception == ModbusException::NONE ? check(write) : exception;
+    exception = exception == ModbusException::None ? check(write) : exception;
   }
-  if (exception != ModbusException::NONE)
+  if (exception != ModbusException::None)
   {
     return exception;
   }
@@ -173,14 +173,14 @@ ModbusException ToshibaVfs15::writeRegisters(std::uint16_t wire, const std::vect
     silent_ = true;
     resetFault();
     control();
-    return ModbusException::NONE;
+    return ModbusException::None;
   }
   for (const Write& write : writes)
   {
     apply(write);
   }
   control();
-  return ModbusException::NONE;
+  return ModbusException::None;
 }
 
 ModbusException ToshibaVfs15::check(const Write& write) const
@@ -192,7 +192,7 @@ ModbusException ToshibaVfs15::check(const Write& write) const
   const Index index = memory_.at(write.number);
   if (index == ParameterMemory::NONE || readOnly(write.number))
   {
-    return ModbusException::ADDRESS_NOT_FOUND;
+    return ModbusException::AddressNotFound;
   }
   if (refusesAccess(write.number, true))
   {
@@ -208,7 +208,7 @@ ModbusException ToshibaVfs15::checkCommand(const Write& write) const
                    (write.number == FA13 && (write.value > 24000 || write.value * pole_pairs / 60.0 > hertz(FH))) ||
                    (write.number == FA10 && write.value > 1) || (write.number == FA51 && write.value > 1000) ||
                    (write.number == FA20 && (write.value & 0x0300U) == 0x0300U);
-  return bad ? ModbusException::FORMAT_NOT_ACCEPTABLE : ModbusException::NONE;
+  return bad ? ModbusException::FormatNotAcceptable : ModbusException::None;
 }
 
 ModbusException ToshibaVfs15::checkParameter(Index index, std::uint32_t raw) const
@@ -216,10 +216,10 @@ ModbusException ToshibaVfs15::checkParameter(Index index, std::uint32_t raw) con
   const auto range = rangeOf(index);
   if (!memory_.accepts(index, raw) || raw < range.first || raw > range.second)
   {
-    return ModbusException::FORMAT_NOT_ACCEPTABLE;
+    return ModbusException::FormatNotAcceptable;
   }
   const bool reset_in_a_trip = memory_.info(index).number == F899 && raw == 1 && tripped_;
-  return locked(index) || reset_in_a_trip ? NOT_EXECUTABLE : ModbusException::NONE;
+  return locked(index) || reset_in_a_trip ? NOT_EXECUTABLE : ModbusException::None;
 }
 
 std::pair<std::uint32_t, std::uint32_t> ToshibaVfs15::rangeOf(Index index) const

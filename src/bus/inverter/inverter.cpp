@@ -24,9 +24,6 @@ constexpr double MOVEMENT_PATIENCE_S = 3.0;
 constexpr double DEVIATION_PATIENCE_S = 2.0;
 // A drive that was switched off and on is deaf for a second: within half of that it can't have lost our RUN unseen.
 constexpr double RUN_EVIDENCE_S = 0.5;
-// Loop-backs that may be left unanswered; contract, 8.8, for those over TCP.
-constexpr unsigned MOST_MISSED_LOOPBACKS = 3;
-constexpr unsigned MOST_MISSED_LOOPBACKS_TCP = 1;
 // A drive that has answered so lately is there.
 constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
@@ -76,7 +73,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , stop(drive, config.node)
   , refresh(drive, config.node)
   , settings(drive, config.node)
-  , loopback(config.modbus_tcp ? MOST_MISSED_LOOPBACKS_TCP : MOST_MISSED_LOOPBACKS)
+  , loopback(config.modbus_tcp)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
   , offline_after_(offline_after)

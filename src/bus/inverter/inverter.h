@@ -14,6 +14,7 @@
 #include "bus/inverter/drive_settings.h"
 #include "bus/inverter/link_record.h"
 #include "bus/inverter/liveness.h"
+#include "bus/inverter/loopback_knowledge.h"
 #include "bus/inverter/lost_writes.h"
 #include "bus/inverter/movement.h"
 #include "bus/inverter/refresh.h"
@@ -35,57 +36,6 @@ struct Judgement
   /// The trip is new; its reason in words.
   bool tripped = false;
   std::string trip_text;
-};
-
-/// Whether the drive really has the loop-back that its profile promises. One that answers it with an exception has not,
-/// nor one that is silent on it time and again but answers other requests.
-class LoopbackKnowledge
-{
-public:
-  /// \p most_misses so often it may be left unanswered: one that got lost on a line says little, a server's silence much.
-  explicit LoopbackKnowledge(unsigned most_misses) : most_misses_(most_misses)
-  {
-  }
-
-  void note(wire::Outcome outcome)
-  {
-    works_ = works_ || outcome == wire::Outcome::Ok;
-    refused_ = refused_ || outcome == wire::Outcome::Exception;
-    misses_ += missed_ ? 0 : 1;
-    missed_ = true;
-  }
-  /// Another request was answered: only now a loop-back that was not says something of the loop-back.
-  void otherAnswered()
-  {
-    missed_ = false;
-  }
-  /// The drive has come back: another one may stand there now.
-  void tryAgain()
-  {
-    misses_ = 0;
-  }
-  /// Worth sending where its answer is needed.
-  bool usable() const
-  {
-    return works_ || !(refused_ || misses_ >= most_misses_);
-  }
-  /// Worth sending where its answer would be good news.
-  bool worthATry() const
-  {
-    return works_ || !refused_;
-  }
-  bool proven() const
-  {
-    return works_;
-  }
-
-private:
-  unsigned most_misses_;
-  bool works_ = false;
-  bool refused_ = false;
-  unsigned misses_ = 0;
-  /// Counted already: a drive that is silent on everything misses once.
-  bool missed_ = false;
 };
 
 /// One inverter of the bus: its parts, its link, and what its words mean together.

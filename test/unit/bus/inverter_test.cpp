@@ -122,52 +122,7 @@ TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
   }
   EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
 }
-TEST(Loopback, OneMissIsEnoughOverTcp)
-{
-  LoopbackKnowledge over_tcp(1);
-  EXPECT_TRUE(over_tcp.usable());
-  over_tcp.note(wire::Outcome::Timeout);
-  EXPECT_FALSE(over_tcp.usable());
-}
 
-TEST(Loopback, ADriveThatAnswersNothingAtAllIsNotTakenForOneWithoutIt)
-{
-  LoopbackKnowledge loopback(3);
-  for (int tries = 0; tries < 10; ++tries)
-  {
-    loopback.note(wire::Outcome::Timeout);
-  }
-  EXPECT_TRUE(loopback.usable());
-}
-
-TEST(Loopback, ADriveThatIsSilentOnItAloneIsNotAskedAgainAndAgain)
-{
-  LoopbackKnowledge loopback(3);
-  for (int tries = 0; tries < 3; ++tries)
-  {
-    EXPECT_TRUE(loopback.usable());
-    loopback.note(wire::Outcome::Timeout);
-    loopback.otherAnswered();
-  }
-  EXPECT_FALSE(loopback.usable());
-  loopback.tryAgain();
-  EXPECT_TRUE(loopback.usable()) << "another drive may stand there after a return";
-}
-
-TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
-{
-  LoopbackKnowledge worked(3);
-  worked.note(wire::Outcome::Ok);
-  for (int tries = 0; tries < 10; ++tries)
-  {
-    worked.note(wire::Outcome::Timeout);
-    worked.otherAnswered();
-  }
-  EXPECT_TRUE(worked.usable());
-  LoopbackKnowledge refused(3);
-  refused.note(wire::Outcome::Exception);
-  EXPECT_FALSE(refused.usable());
-}
 /// An MX2 behind a Modbus TCP gateway.
 class Mx2BehindAGateway : public testing::Test
 {

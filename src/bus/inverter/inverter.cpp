@@ -31,16 +31,6 @@ constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
 constexpr double MOST_PAID_FOR_DATA_S = 0.135;
 
-std::string listed(const std::vector<int>& codes)
-{
-  std::string text;
-  for (const int code : codes)
-  {
-    text += (text.empty() ? "" : ", ") + std::to_string(code);
-  }
-  return text;
-}
-
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
 {
@@ -74,6 +64,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , refresh(drive, config.node)
   , settings(drive, config.node)
   , loopback(config.modbus_tcp)
+  , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
   , offline_after_(offline_after)
@@ -198,7 +189,7 @@ void Inverter::forgetDrive(bool after_silence)
   run_shown_at_.reset();
   run_proven_ = false;
   setup_open = false;
-  block_note_.clear();
+  block_transfer.tryAgain();
   connect_not_before = TimePoint();
   setting_not_before = TimePoint();
   movement.forgetWords();
@@ -291,66 +282,20 @@ void Inverter::adoptSettings()
   ratings.current = config.rated_current ? config.rated_current : ratings.current;
   ratings.voltage = config.rated_voltage ? config.rated_voltage : ratings.voltage;
   refresh.setRatings(ratings);
-  const bool use = block_note_.empty() && blockFits();
-  refresh.useBlock(use ? drive.chosenRead(config.block_read) : std::nullopt);
-}
-
-bool Inverter::blockFits() const
-{
-  const auto slots = settings.blockSlots();
-  if (!slots || slots->read != config.block_read)
-  {
-    return false;
-  }
-  const auto& select = drive.profile().block->select;
-  return std::equal(select.begin(), select.end(), slots->write.begin(), slots->write.end(),
-                    [](const auto& wanted, int code) { return static_cast<int>(wanted.second) == code; });
+  refresh.useBlock(block_transfer.read(settings.blockSlots()));
 }
 
 std::vector<std::pair<std::string, std::uint32_t>> Inverter::blockToConfigure()
 {
-  std::vector<std::pair<std::string, std::uint32_t>> wanted;
-  const auto slots = settings.blockSlots();
   const bool at_rest = known_ && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
                        !refresh.fresh().running.value_or(true);
-  if (!config.configure_block || block_configured_ || !slots || blockFits() || !at_rest ||
-      settings.identity() != Identity::Right)
-  {
-    return wanted;
-  }
-  // Once: each of these writes wears the EEPROM.
-  block_configured_ = true;
-  const drive::Block& block = *drive.profile().block;
-  const auto add = [&](const std::string& name, std::uint32_t raw) {
-    if (drive.findParameter(name, true))
-    {
-      wanted.emplace_back(name, raw);
-    }
-  };
-  for (std::size_t slot = 0; slot < block.write_slots.size(); ++slot)
-  {
-    if (slots->write[slot] != static_cast<int>(block.select[slot].second))
-    {
-      add(block.write_slots[slot], block.select[slot].second);
-    }
-  }
-  for (std::size_t slot = 0; slot < block.read_slots.size() && slot < config.block_read.size(); ++slot)
-  {
-    if (slots->read[slot] != config.block_read[slot])
-    {
-      add(block.read_slots[slot], static_cast<std::uint32_t>(config.block_read[slot]));
-    }
-  }
-  if (!block.apply_parameter.empty())
-  {
-    add(block.apply_parameter, block.apply_value);
-  }
-  return wanted;
+  const bool may_write = at_rest && settings.identity() == Identity::Right;
+  return block_transfer.takeWrites(may_write ? settings.blockSlots() : std::nullopt);
 }
 
 void Inverter::dropBlock(const std::string& why)
 {
-  block_note_ = why;
+  block_transfer.drop(why);
   refresh.useBlock(std::nullopt);
 }
 
@@ -403,7 +348,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   exchanges_without_data_ = 0;
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
-    block_note_ = "it is selected but not in effect, or the drive refuses it";
+    block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
   const drive::Monitor& words = more ? refresh.words() : refresh.fresh();
   const bool evidence = reply.sent_at >= movement.runChangedAt();
@@ -421,11 +366,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
 void Inverter::parameterWritten(const std::string& name)
 {
   settings.reread(name);
-  const auto& block = drive.profile().block;
-  const auto among = [&name](const std::vector<std::string>& slots) {
-    return std::find(slots.begin(), slots.end(), name) != slots.end();
-  };
-  if (block && (among(block->read_slots) || among(block->write_slots)))
+  if (block_transfer.isSelectedBy(name))
   {
     dropBlock("its selection was changed; that counts after the drive was switched off and on");
   }
@@ -556,7 +497,7 @@ void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Ju
   }
   settings.restart();
   // What was selected for its block read may count only now.
-  block_note_.clear();
+  block_transfer.tryAgain();
   refresh.useBlock(std::nullopt);
   run_proven_ = false;
   if (movement.runPossible() && !stop.pending())
@@ -924,7 +865,7 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (drive.profile().block && settings.blockSlots() && !refresh.block())
   {
-    warn(blockFinding());
+    warn(block_transfer.whyNot(*settings.blockSlots()));
   }
   if (writesWear())
   {
@@ -938,32 +879,6 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
 bool Inverter::writesWear() const
 {
   return drive.wears("frequency") && !settings.connected() && drive.sequence("forward") != nullptr;
-}
-
-std::string Inverter::blockFinding() const
-{
-  if (!block_note_.empty())
-  {
-    return "block read and write are not used: " + block_note_;
-  }
-  const auto slots = settings.blockSlots();
-  if (blockFits())
-  {
-    return "block read is selected but not in effect: direct reads are used; switch the drive off and on";
-  }
-  return "block read and write are not used, since the drive has selected " + listed(slots->write) + " and " +
-         listed(slots->read) + " instead of " + listed(wantedWriteCodes()) + " and " + listed(config.block_read) +
-         "; direct reads are used; set the drive, or configure_block: true";
-}
-
-std::vector<int> Inverter::wantedWriteCodes() const
-{
-  std::vector<int> codes;
-  for (const auto& entry : drive.profile().block->select)
-  {
-    codes.push_back(static_cast<int>(entry.second));
-  }
-  return codes;
 }
 
 std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now) const

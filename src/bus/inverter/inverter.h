@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bus/inverter/block_transfer.h"
 #include "bus/inverter/command_error.h"
 #include "bus/inverter/drive_settings.h"
 #include "bus/inverter/link_record.h"
@@ -55,6 +56,7 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  BlockTransfer block_transfer;
   /// What came since the last complete status.
   LinkRecord record;
   LostWrites lost_writes;
@@ -102,8 +104,6 @@ public:
   bool connectDue(TimePoint now) const;
   /// After each exchange for its settings.
   void settled(TimePoint now, const wire::Reply& reply);
-  /// The drive has selected exactly the words that are configured.
-  bool blockFits() const;
   /// Parameters and values that make the block read and write fit, empty where nothing is to be written (any more).
   std::vector<std::pair<std::string, std::uint32_t>> blockToConfigure();
   /// The drive takes no block write: direct reads and single writes from now on.
@@ -184,8 +184,6 @@ private:
   void adoptSettings();
   bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
-  std::string blockFinding() const;
-  std::vector<int> wantedWriteCodes() const;
   void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
@@ -244,8 +242,6 @@ private:
   /// By then the drive had not restarted.
   TimePoint no_restart_until_;
   double last_shown_hz_ = 0.0;
-  bool block_configured_ = false;
-  std::string block_note_;
   std::uint64_t eeprom_writes_ = 0;
 };
 }  // namespace bus

@@ -22,12 +22,9 @@ constexpr double OPERATION_LOST_S = 0.5;
 constexpr double LOWEST_JUDGED_HZ = 1.0;
 constexpr double MOVEMENT_PATIENCE_S = 3.0;
 constexpr double DEVIATION_PATIENCE_S = 2.0;
-// A drive that was switched off and on is deaf for a second: within half of that it can't have lost our RUN unseen.
-constexpr double RUN_EVIDENCE_S = 0.5;
 // A drive that has answered so lately is there.
 constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
-constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
 constexpr double MOST_PAID_FOR_DATA_S = 0.135;
 
@@ -64,6 +61,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , refresh(drive, config.node)
   , settings(drive, config.node)
   , loopback(config.modbus_tcp)
+  , evidence(drive)
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
@@ -186,8 +184,7 @@ void Inverter::forgetDrive(bool after_silence)
 {
   leftover_judged_ = false;
   early_trip_ = false;
-  run_shown_at_.reset();
-  run_proven_ = false;
+  evidence.forget();
   setup_open = false;
   block_transfer.tryAgain();
   connect_not_before = TimePoint();
@@ -304,13 +301,8 @@ void Inverter::noteExchange(const wire::Reply& reply)
   const wire::Outcome outcome = reply.outcome;
   gateway_code_ = reply.gateway_code;
   exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
-  run_shown_at_.reset();
-  if (outcome == wire::Outcome::Ok)
-  {
-    return;
-  }
-  run_proven_ = false;
-  if (outcome == wire::Outcome::Exception)
+  evidence.exchangeEnded(outcome);
+  if (outcome == wire::Outcome::Ok || outcome == wire::Outcome::Exception)
   {
     return;
   }
@@ -321,22 +313,6 @@ void Inverter::noteExchange(const wire::Reply& reply)
     // After one the drive writes set-points to its EEPROM again.
     settings.connectAgain();
   }
-}
-
-/// The motor turns as we want it, or is on its way there: not on its way to rest after a RUN that the drive has lost.
-bool Inverter::followsTarget(const drive::Monitor& monitor)
-{
-  const auto& target = movement.target();
-  if (!target || target->zero || !monitor.output_frequency)
-  {
-    return false;
-  }
-  const double wanted = target->counts * drive.frequencyResolution();
-  const double distance = std::fabs(*monitor.output_frequency - wanted);
-  const double before = std::fabs(last_shown_hz_ - wanted);
-  last_shown_hz_ = *monitor.output_frequency;
-  const bool turns_right = !monitor.direction || *monitor.direction == (target->reverse ? -1 : 1);
-  return turns_right && (distance <= std::max(0.5, 0.02 * wanted) || distance < before);
 }
 
 void Inverter::noteStatus(const wire::Reply& reply, bool more)
@@ -350,17 +326,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
-  const drive::Monitor& words = more ? refresh.words() : refresh.fresh();
-  const bool evidence = reply.sent_at >= movement.runChangedAt();
-  if (words.run_seen)
-  {
-    run_proven_ = *words.run_seen && evidence && movement.runConfirmed();
-  }
-  const bool runs = words.operation.value_or(false) || words.running.value_or(false);
-  if (runs && evidence && run_proven_ && followsTarget(words))
-  {
-    run_shown_at_ = reply.finished_at;
-  }
+  evidence.statusRead(more ? refresh.words() : refresh.fresh(), reply, movement);
 }
 
 void Inverter::parameterWritten(const std::string& name)
@@ -379,8 +345,7 @@ bool Inverter::inSetup() const
 
 bool Inverter::mayRepeatWords(TimePoint now) const
 {
-  return run_shown_at_ && now - *run_shown_at_ < seconds(RUN_EVIDENCE_S) && *run_shown_at_ >= movement.runChangedAt() &&
-         movement.runConfirmed() && !stop.pending() && !interlock.isFaulted();
+  return evidence.shows(now, movement) && !stop.pending() && !interlock.isFaulted();
 }
 
 bool Inverter::mustBeSeenRunning() const
@@ -464,11 +429,9 @@ Judgement Inverter::judge(TimePoint now)
   judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
   judgeRestart(monitor, refresh.freshSentAt(), judgement);
   compareMovement(now, monitor);
-  if (movement.runConfirmed() && now - command_source_at_ >= seconds(COMMAND_SOURCE_PERIOD_S))
+  if (evidence.takeSourceDue(now, movement))
   {
-    // A panel or a terminal may take the drive over at any time.
     settings.commanded();
-    command_source_at_ = now;
   }
   leftover_judged_ = leftover_judged_ || monitor.run_seen || !drive.reports("run_seen");
   return judgement;
@@ -481,25 +444,22 @@ void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Ju
   {
     return;
   }
-  if (!*monitor.restarted)
+  const Restart restart = evidence.restartRead(*monitor.restarted, sent_at, movement, stop.pending());
+  if (restart == Restart::None)
   {
-    no_restart_until_ = sent_at;
     return;
   }
   refresh.restartNoted();
-  if (movement.runConfirmed() && no_restart_until_ < movement.runChangedAt() && !stop.pending())
+  if (restart == Restart::PerhapsBeforeRun)
   {
-    // It may have restarted before it got the RUN that is in force. If that is gone, the next read shows it.
     settings.connectAgain();
     refresh.askForRun();
-    run_proven_ = false;
     return;
   }
   settings.restart();
   // What was selected for its block read may count only now.
   block_transfer.tryAgain();
   refresh.useBlock(std::nullopt);
-  run_proven_ = false;
   if (movement.runPossible() && !stop.pending())
   {
     judgement.stop_reason = "the drive has restarted (switched off and on, or reset)";

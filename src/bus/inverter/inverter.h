@@ -19,6 +19,7 @@
 #include "bus/inverter/lost_writes.h"
 #include "bus/inverter/movement.h"
 #include "bus/inverter/refresh.h"
+#include "bus/inverter/run_evidence.h"
 #include "bus/inverter/stop_job.h"
 #include "bus/rules/interlock.h"
 #include "bus/rules/scheduler.h"
@@ -56,6 +57,7 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  RunEvidence evidence;
   BlockTransfer block_transfer;
   /// What came since the last complete status.
   LinkRecord record;
@@ -182,7 +184,6 @@ private:
   void forgetDrive(bool after_silence);
   void noteBack();
   void adoptSettings();
-  bool followsTarget(const drive::Monitor& monitor);
   bool writesWear() const;
   void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
   void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
@@ -233,15 +234,7 @@ private:
   bool unexpected_motion_ = false;
   bool leftover_judged_ = false;
   bool early_trip_ = false;
-  TimePoint command_source_at_;
 
-  // block read and write
-  std::optional<TimePoint> run_shown_at_;
-  /// The drive's own copy of our RUN command was read as on since the last lost exchange.
-  bool run_proven_ = false;
-  /// By then the drive had not restarted.
-  TimePoint no_restart_until_;
-  double last_shown_hz_ = 0.0;
   std::uint64_t eeprom_writes_ = 0;
 };
 }  // namespace bus

@@ -25,9 +25,6 @@ constexpr double DEVIATION_PATIENCE_S = 2.0;
 // A drive that has answered so lately is there.
 constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
-// 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
-constexpr double MOST_PAID_FOR_DATA_S = 0.135;
-
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
 {
@@ -61,12 +58,11 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , refresh(drive, config.node)
   , settings(drive, config.node)
   , loopback(config.modbus_tcp)
+  , link(offline_after)
   , evidence(drive)
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
-  , offline_after_(offline_after)
-  , exchanges_without_data_(offline_after)
 {
 }
 
@@ -74,77 +70,55 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
 
 void Inverter::answered(const wire::Reply& reply)
 {
-  last_reply_ = reply.finished_at;
-  ever_answered_ = true;
-  slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
+  link.answered(reply);
   probes = 0;
-  if (offline_)
-  {
-    probed_ = false;
-    on_trial_ = true;
-    return;
-  }
-  exchange_error_ = 0;
 }
 
 void Inverter::beginTrial(Duration delay)
 {
-  if (silent() && probed_)
-  {
-    slowest_reply_ = std::max(slowest_reply_, std::min(delay, seconds(config.response_timeout)));
-    on_trial_ = true;
-    probed_ = false;
-    // That probe is paid for.
-    trial_cost_ = Duration::zero();
-    trial_waste_ = Duration::zero();
-  }
+  link.beginTrial(std::min(delay, seconds(config.response_timeout)));
 }
 
 bool Inverter::onTrial() const
 {
-  return on_trial_;
+  return link.onTrial();
 }
 
 Duration Inverter::endTrial(std::uint16_t error_id)
 {
-  on_trial_ = false;
   refresh_tries = 0;
   settings_tries = 0;
   forgetDrive(!isRefusal(error_id));
-  // What was lost or refused is paid for in full, what brought something as far as it does not delay the next probe for long.
-  return std::max(trial_waste_, std::min(trial_cost_, seconds(MOST_PAID_FOR_DATA_S)));
+  return link.endTrial();
 }
 
 bool Inverter::silent() const
 {
-  return offline_ && !on_trial_;
+  return link.silent();
 }
 
 void Inverter::noteCost(bool probe, wire::Outcome outcome, Duration cost)
 {
-  probed_ = probed_ || (offline_ && probe);
-  const bool wasted = outcome != wire::Outcome::Ok;
-  trial_cost_ = (on_trial_ ? trial_cost_ : Duration::zero()) + cost;
-  trial_waste_ = (on_trial_ ? trial_waste_ : Duration::zero()) + (wasted ? cost : Duration::zero());
+  link.noteCost(probe, outcome, cost);
 }
 
 bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
 {
-  if (now < silence_until_ || offline_)
+  if (liveness.mayBeDeaf(now) || link.offline())
   {
     return false;
   }
-  exchange_error_ = error_id;
+  link.failed(error_id);
   if (liveness.lost(write))
   {
     goOffline(error_id);
   }
-  return offline_;
+  return link.offline();
 }
 
 bool Inverter::refusedStatus(std::uint16_t error_id)
 {
-  if (!offline_ && liveness.refused())
+  if (!link.offline() && liveness.refused())
   {
     goOffline(error_id);
     return true;
@@ -154,18 +128,14 @@ bool Inverter::refusedStatus(std::uint16_t error_id)
 
 bool Inverter::overdue(TimePoint now, Duration period) const
 {
-  return !offline_ && liveness.overdue(now, period);
+  return !link.offline() && liveness.overdue(now, period);
 }
 
 void Inverter::goOffline(std::uint16_t error_id)
 {
   // What refuses to tell its status has been there all the time: what it is need not be asked again.
   const bool refused = isRefusal(error_id);
-  offline_ = true;
-  on_trial_ = false;
-  probed_ = false;
-  known_ = false;
-  exchange_error_ = error_id;
+  link.goOffline(error_id);
   command_error_.wentOffline();
   velocityConfirmed();
   interlock.offline();
@@ -173,7 +143,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   movement.drop();
   unexpected_motion_ = false;
   reset_active = false;
-  silence_until_ = TimePoint();
+  liveness.heard();
   // From now on nothing of it is answered, and that is what users are told.
   lost_writes.lower();
   forgetDrive(!refused);
@@ -199,45 +169,29 @@ void Inverter::forgetDrive(bool after_silence)
   operation_off_since_.reset();
 }
 
-/// A complete status has come.
-void Inverter::noteBack()
-{
-  if (offline_)
-  {
-    offline_ = false;
-    on_trial_ = false;
-    exchange_error_ = 0;
-    loopback.tryAgain();
-    ++returns_;
-  }
-  known_ = true;
-  ever_known_ = true;
-}
-
 bool Inverter::offline() const
 {
-  return offline_;
+  return link.offline();
 }
 
 bool Inverter::known() const
 {
-  return known_;
+  return link.known();
 }
 
 bool Inverter::everKnown() const
 {
-  return ever_known_;
+  return link.everKnown();
 }
 
 void Inverter::expectSilence(TimePoint now, Duration duration)
 {
-  silence_until_ = now + duration;
-  liveness.deafUntil(silence_until_);
+  liveness.deafUntil(now + duration);
 }
 
 void Inverter::noDeafness()
 {
-  silence_until_ = TimePoint();
+  liveness.heard();
 }
 
 wire::Request Inverter::prepared(wire::Request request) const
@@ -247,7 +201,7 @@ wire::Request Inverter::prepared(wire::Request request) const
   request.quiet_before = seconds(drive.profile().quiet_before);
   if (config.modbus_tcp)
   {
-    request.own_exceptions = ownExceptions(drive.profile().exceptions, exchanges_without_data_ < offline_after_);
+    request.own_exceptions = ownExceptions(drive.profile().exceptions, link.sendsData());
   }
   return request;
 }
@@ -257,7 +211,7 @@ wire::Request Inverter::prepared(wire::Request request) const
 bool Inverter::connectDue(TimePoint now) const
 {
   // Nothing but reads goes to a port of the drive's own before it has told its status (contract, 8.8).
-  const bool must_wait = config.ownPort() && !ever_known_ && settings.nextWrites();
+  const bool must_wait = config.ownPort() && !link.everKnown() && settings.nextWrites();
   return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent() && !must_wait;
 }
 
@@ -284,7 +238,7 @@ void Inverter::adoptSettings()
 
 std::vector<std::pair<std::string, std::uint32_t>> Inverter::blockToConfigure()
 {
-  const bool at_rest = known_ && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
+  const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
                        !refresh.fresh().running.value_or(true);
   const bool may_write = at_rest && settings.identity() == Identity::Right;
   return block_transfer.takeWrites(may_write ? settings.blockSlots() : std::nullopt);
@@ -299,8 +253,7 @@ void Inverter::dropBlock(const std::string& why)
 void Inverter::noteExchange(const wire::Reply& reply)
 {
   const wire::Outcome outcome = reply.outcome;
-  gateway_code_ = reply.gateway_code;
-  exchanges_without_data_ = std::min(exchanges_without_data_ + 1, offline_after_);
+  link.exchangeEnded(reply);
   evidence.exchangeEnded(outcome);
   if (outcome == wire::Outcome::Ok || outcome == wire::Outcome::Exception)
   {
@@ -321,7 +274,7 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     return;
   }
-  exchanges_without_data_ = 0;
+  link.dataRead();
   if (!refresh.block() && refresh.takeBlockRefusal())
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
@@ -379,7 +332,7 @@ bool Inverter::probesByLoopback() const
 
 bool Inverter::loopbackUsable() const
 {
-  return loopback.usable() && (ever_known_ || !config.ownPort());
+  return loopback.usable() && (link.everKnown() || !config.ownPort());
 }
 
 wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
@@ -394,12 +347,12 @@ wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) c
 
 Duration Inverter::slowestReply() const
 {
-  return slowest_reply_;
+  return link.slowestReply();
 }
 
 void Inverter::lateReply(Duration delay)
 {
-  latest_late_reply_ = std::max(latest_late_reply_, delay);
+  link.cameLate(delay);
   record.noteLate();
 }
 
@@ -409,9 +362,11 @@ Judgement Inverter::judge(TimePoint now)
 {
   Judgement judgement;
   const drive::Monitor& monitor = refresh.fresh();
-  noteBack();
+  if (link.statusComplete())
+  {
+    loopback.tryAgain();
+  }
   liveness.complete(now);
-  silence_until_ = TimePoint();
   record.restart();
   interlock.online(now);
   // A status that can't tell of a trip does not end one.
@@ -601,8 +556,9 @@ InverterStatus Inverter::status(TimePoint now) const
   status.model = settings.model();
   status.stamp = refresh.stamp();
   status.has_stamp = refresh.hasStamp();
-  status.communication_error = offline_;
-  status.refuses = offline_ && liveness.refusesForTheMoment() && now - last_reply_ < seconds(LATELY_S);
+  const bool answered_lately = link.lastAnswer() && now - *link.lastAnswer() < seconds(LATELY_S);
+  status.communication_error = link.offline();
+  status.refuses = link.offline() && liveness.refusesForTheMoment() && answered_lately;
   if (!status.communication_error)
   {
     status.monitor = refresh.monitor(now);
@@ -621,7 +577,7 @@ InverterStatus Inverter::status(TimePoint now) const
 Obstacles Inverter::obstacles() const
 {
   Obstacles obstacles;
-  obstacles.offline = offline_;
+  obstacles.offline = link.offline();
   obstacles.tripped = interlock.isFaulted();
   obstacles.stop_pending = interlock.stopPending();
   obstacles.reset_active = reset_active;
@@ -633,9 +589,9 @@ Obstacles Inverter::obstacles() const
 /// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
 void Inverter::showError(TimePoint now, InverterStatus& status) const
 {
-  if (status.communication_error && exchange_error_ != 0 && !command_error_.countsWhileOffline())
+  if (status.communication_error && link.error() != 0 && !command_error_.countsWhileOffline())
   {
-    status.error_id = exchange_error_;
+    status.error_id = link.error();
     status.error_text = exchangeText();
     return;
   }
@@ -649,16 +605,16 @@ void Inverter::showError(TimePoint now, InverterStatus& status) const
     Obstacles now_there = obstacles();
     now_there.locked = interlock.locked(now);
     status.error_id = command_error_.id();
-    status.error_text = command_error_.text(now_there, exchange_error_ == 0 ? "" : exchangeText());
+    status.error_text = command_error_.text(now_there, link.error() == 0 ? "" : exchangeText());
   }
   else if (velocity_error_ != 0)
   {
     status.error_id = velocity_error_;
     status.error_text = "the last velocity was not carried out: " + velocity_error_text_;
   }
-  else if (exchange_error_ != 0)
+  else if (link.error() != 0)
   {
-    status.error_id = exchange_error_;
+    status.error_id = link.error();
     status.error_text = exchangeText();
   }
 }
@@ -666,9 +622,9 @@ void Inverter::showError(TimePoint now, InverterStatus& status) const
 /// Why it is offline; else in the drive's own words where it has answered.
 std::string Inverter::exchangeText() const
 {
-  const std::string why = offline_ && exchange_error_ != wire::ERROR_PORT_LOST ? liveness.reason() : "";
-  const std::string text = why.empty() ? drive.exceptionText(exchange_error_) : why;
-  return text.empty() ? errorText(exchange_error_, gateway_code_) : text;
+  const std::string why = link.offline() && link.error() != wire::ERROR_PORT_LOST ? liveness.reason() : "";
+  const std::string text = why.empty() ? drive.exceptionText(link.error()) : why;
+  return text.empty() ? errorText(link.error(), link.gatewayCode()) : text;
 }
 
 void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
@@ -701,18 +657,12 @@ void Inverter::acceptCommand()
 
 void Inverter::noteExchangeError(std::uint16_t error_id)
 {
-  exchange_error_ = error_id;
+  link.failed(error_id);
 }
 
 void Inverter::noteProbed(const wire::Reply& reply)
 {
-  // One that is answered is no status: what was missing is still missing.
-  const bool port_is_back = exchange_error_ == wire::ERROR_PORT_LOST;
-  const bool answered = reply.outcome == wire::Outcome::Ok;
-  if (offline_ && (!answered || port_is_back))
-  {
-    exchange_error_ = answered ? wire::ERROR_TIMEOUT : reply.error_id;
-  }
+  link.probed(reply);
 }
 
 std::string Inverter::onlineText() const
@@ -727,14 +677,14 @@ std::string Inverter::offlineReason() const
 {
   const std::string seen = record.text(drive);
   return exchangeText() +
-         (seen.empty() || exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
+         (seen.empty() || link.error() == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
 }
 
 std::string Inverter::offlineText(TimePoint now) const
 {
-  std::string text = "offline (" + errorIdText(exchange_error_) + " " + offlineReason() + "; last answer ";
-  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
-  return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
+  std::string text = "offline (" + errorIdText(link.error()) + " " + offlineReason() + "; last answer ";
+  text += link.lastAnswer() ? wire::shownDuration(now - *link.lastAnswer()) + " ago)" : "never)";
+  return text + (link.error() == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
 }
 
 /// Before the first complete status.
@@ -747,13 +697,13 @@ std::string Inverter::silenceText() const
 std::vector<Finding> Inverter::errors(TimePoint now) const
 {
   std::vector<Finding> findings;
-  if (offline_ && exchange_error_ == wire::ERROR_PORT_LOST)
+  if (link.offline() && link.error() == wire::ERROR_PORT_LOST)
   {
-    findings.push_back({ Level::Error, "offline (" + errorIdText(exchange_error_) +
+    findings.push_back({ Level::Error, "offline (" + errorIdText(link.error()) +
                                            "), since the port is not open: what to do about it is told of the bus" });
     return findings;
   }
-  if (offline_)
+  if (link.offline())
   {
     findings.push_back({ Level::Error, offlineText(now) });
     return findings;
@@ -781,7 +731,7 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
 {
   std::vector<Finding> findings = errors(now);
   const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
-  if (!offline_ && !known_)
+  if (!link.offline() && !link.known())
   {
     warn(silenceText());
   }
@@ -809,9 +759,9 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   {
     warn("several publishers command this inverter");
   }
-  if (latest_late_reply_ > Duration::zero())
+  if (link.latestReply() > Duration::zero())
   {
-    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
+    warn("a reply came " + wire::shownDuration(link.latestReply()) +
          " after its request; a response_timeout above that "
          "would have caught it");
   }
@@ -849,8 +799,8 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
                       refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
-  values.emplace_back("returns", std::to_string(returns_));
+  values.emplace_back("slowest reply", wire::shownDuration(link.slowestReply()));
+  values.emplace_back("returns", std::to_string(link.returns()));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
   values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
@@ -878,7 +828,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   const drive::Monitor& monitor = refresh.fresh();
   view.offline = silent();
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
-  view.at_rest = known_ && tells && !movement.runPossible() && !movement.target() &&
+  view.at_rest = link.known() && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
                  !monitor.tripped().value_or(false);
   view.stop_pending = stop.pending();
@@ -888,7 +838,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.refresh_not_before = refresh_not_before;
   const bool rested = refused_setting_not_before_ <= now || settings.pauseBeforeNext() == Duration{ 0 };
   const bool may_ask = refresh_not_before <= now && setting_not_before <= now && rested;
-  view.background = known_ && !offline_ && settings.pending() && may_ask;
+  view.background = link.known() && !link.offline() && settings.pending() && may_ask;
   view.serve_by = serveBy(deadline_margin);
   return view;
 }
@@ -896,13 +846,13 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 std::optional<TimePoint> Inverter::serveBy(Duration deadline_margin) const
 {
   const auto timeout = settings.driveTimeout();
-  if (!timeout || !ever_answered_)
+  if (!timeout || !link.lastAnswer())
   {
     return std::nullopt;
   }
   const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
   // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
-  return last_reply_ + std::max(latest, *timeout / 2);
+  return *link.lastAnswer() + std::max(latest, *timeout / 2);
 }
 
 std::vector<drive::ReadBlock> Inverter::reads() const

@@ -13,6 +13,7 @@
 #include "bus/inverter/block_transfer.h"
 #include "bus/inverter/command_error.h"
 #include "bus/inverter/drive_settings.h"
+#include "bus/inverter/link.h"
 #include "bus/inverter/link_record.h"
 #include "bus/inverter/liveness.h"
 #include "bus/inverter/loopback_knowledge.h"
@@ -57,6 +58,7 @@ public:
   DriveSettings settings;
   std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
+  Link link;
   RunEvidence evidence;
   BlockTransfer block_transfer;
   /// What came since the last complete status.
@@ -182,7 +184,6 @@ public:
 
 private:
   void forgetDrive(bool after_silence);
-  void noteBack();
   void adoptSettings();
   bool writesWear() const;
   void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
@@ -196,32 +197,11 @@ private:
   Obstacles obstacles() const;
   void showError(TimePoint now, InverterStatus& status) const;
 
-  int offline_after_;
-  /// Since its last status words; counted up to offline_after_.
-  int exchanges_without_data_;
-  bool known_ = false;  ///< a complete status has come since start or return
-  bool ever_known_ = false;
-  bool offline_ = false;
-  bool on_trial_ = false;
-  /// What the trial has cost since the probe that began it, and how much of that was lost or refused.
-  Duration trial_cost_{ 0 };
-  Duration trial_waste_{ 0 };
-  /// Since the last trial, and nobody has answered it yet.
-  bool probed_ = false;
-  std::uint16_t exchange_error_ = 0;
-  /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
-  std::uint8_t gateway_code_ = 0;
   CommandError command_error_;
   std::uint16_t velocity_error_ = 0;
   std::string velocity_error_text_;
-  TimePoint last_reply_;
-  bool ever_answered_ = false;
-  TimePoint silence_until_;
   /// All settings that are left were refused for the moment.
   TimePoint refused_setting_not_before_;
-  Duration slowest_reply_{ 0 };
-  Duration latest_late_reply_{ 0 };
-  std::uint64_t returns_ = 0;
 
   // commanded against actual
   bool operation_seen_ = false;

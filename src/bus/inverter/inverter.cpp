@@ -137,7 +137,6 @@ void Inverter::goOffline(std::uint16_t error_id)
   const bool refused = isRefusal(error_id);
   link.goOffline(error_id);
   command_error_.wentOffline();
-  velocityConfirmed();
   interlock.offline();
   stop.forgetConfirmation();
   movement.drop();
@@ -607,11 +606,6 @@ void Inverter::showError(TimePoint now, InverterStatus& status) const
     status.error_id = command_error_.id();
     status.error_text = command_error_.text(now_there, link.error() == 0 ? "" : exchangeText());
   }
-  else if (velocity_error_ != 0)
-  {
-    status.error_id = velocity_error_;
-    status.error_text = "the last velocity was not carried out: " + velocity_error_text_;
-  }
   else if (link.error() != 0)
   {
     status.error_id = link.error();
@@ -629,14 +623,12 @@ std::string Inverter::exchangeText() const
 
 void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
 {
-  velocity_error_ = error_id;
-  velocity_error_text_ = text;
+  command_error_.failed(error_id, text);
 }
 
 void Inverter::velocityConfirmed()
 {
-  velocity_error_ = 0;
-  velocity_error_text_.clear();
+  command_error_.confirmed();
 }
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)

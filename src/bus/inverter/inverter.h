@@ -198,8 +198,6 @@ private:
   void showError(TimePoint now, InverterStatus& status) const;
 
   CommandError command_error_;
-  std::uint16_t velocity_error_ = 0;
-  std::string velocity_error_text_;
   /// All settings that are left were refused for the moment.
   TimePoint refused_setting_not_before_;
 

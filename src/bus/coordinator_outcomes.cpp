@@ -471,8 +471,7 @@ void Coordinator::finishVelocity(const Current& current, const wire::Reply& repl
   }
   if (complete && inverter.movement.zeroUnverified() && !inverter.drive.runBlock())
   {
-    inverter.movement.stopped(reply.finished_at);
-    inverter.interlock.resting();
+    inverter.cameToRest(reply.finished_at);
   }
 }
 

@@ -496,10 +496,9 @@ bool Coordinator::refuseWrongDrive(const Inverter& inverter, const AnswerCallbac
 
 void Coordinator::stopConfirmed(TimePoint now, Inverter& inverter)
 {
-  inverter.movement.stopped(now);
+  inverter.cameToRest(now);
   inverter.settings.released();
   inverter.interlock.stopConfirmed(now);
-  inverter.interlock.resting();
   finishStopCalls(now);
 }
 

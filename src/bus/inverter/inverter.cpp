@@ -3,7 +3,6 @@
 #include "bus/inverter/inverter.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "bus/link/own_exceptions.h"
 #include "wire/shown_number.h"
@@ -16,12 +15,6 @@ namespace
 {
 // Share of the drive's own time-out after which it is served whatever else waits.
 constexpr double TIMEOUT_SHARE = 0.8;
-// At reversal a drive may show "stopped" for a moment: only a longer one means that it lost its RUN.
-constexpr double OPERATION_LOST_S = 0.5;
-// Below this a drive may legitimately stand still with RUN on (start frequency).
-constexpr double LOWEST_JUDGED_HZ = 1.0;
-constexpr double MOVEMENT_PATIENCE_S = 3.0;
-constexpr double DEVIATION_PATIENCE_S = 2.0;
 // A drive that has answered so lately is there.
 constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
@@ -32,19 +25,6 @@ bool isRefusal(std::uint16_t error_id)
          error_id != wire::ERROR_PORT_LOST;
 }
 
-bool lasts(std::optional<TimePoint>& since, bool condition, TimePoint now, double patience)
-{
-  if (!condition)
-  {
-    since.reset();
-    return false;
-  }
-  if (!since)
-  {
-    since = now;
-  }
-  return now - *since >= seconds(patience);
-}
 }  // namespace
 
 Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after,
@@ -60,6 +40,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , loopback(config.modbus_tcp)
   , link(offline_after)
   , evidence(drive)
+  , motion(drive, config)
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
@@ -140,7 +121,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   interlock.offline();
   stop.forgetConfirmation();
   movement.drop();
-  unexpected_motion_ = false;
+  motion.wentOffline();
   reset_active = false;
   liveness.heard();
   // From now on nothing of it is answered, and that is what users are told.
@@ -151,9 +132,8 @@ void Inverter::goOffline(std::uint16_t error_id)
 /// What was read of it counts no more; after silence another drive may stand there, or it may have been switched off and on.
 void Inverter::forgetDrive(bool after_silence)
 {
-  leftover_judged_ = false;
-  early_trip_ = false;
   evidence.forget();
+  motion.forget();
   setup_open = false;
   block_transfer.tryAgain();
   connect_not_before = TimePoint();
@@ -164,8 +144,6 @@ void Inverter::forgetDrive(bool after_silence)
   {
     settings.restart();
   }
-  operation_seen_ = false;
-  operation_off_since_.reset();
 }
 
 bool Inverter::offline() const
@@ -359,8 +337,6 @@ void Inverter::lateReply(Duration delay)
 
 Judgement Inverter::judge(TimePoint now)
 {
-  Judgement judgement;
-  const drive::Monitor& monitor = refresh.fresh();
   if (link.statusComplete())
   {
     loopback.tryAgain();
@@ -368,182 +344,73 @@ Judgement Inverter::judge(TimePoint now)
   liveness.complete(now);
   record.restart();
   interlock.online(now);
-  // A status that can't tell of a trip does not end one.
-  const bool faulted = monitor.tripped().value_or(interlock.isFaulted());
-  const bool new_trip = faulted && !interlock.isFaulted();
-  judgement.tripped = new_trip || early_trip_;
-  early_trip_ = false;
-  interlock.faulted(faulted);
-  if (judgement.tripped)
-  {
-    judgement.trip_text = drive.tripText(monitor);
-    judgement.stop_reason = new_trip ? judgement.trip_text : std::string();
-  }
-  judgeRun(monitor, refresh.freshSentAt(), judgement);
-  judgeOperation(now, monitor, refresh.freshSentAt(), judgement);
-  judgeRestart(monitor, refresh.freshSentAt(), judgement);
-  compareMovement(now, monitor);
+  const Judgement judgement = compare(now, refresh.fresh(), refresh.freshSentAt(), true);
   if (evidence.takeSourceDue(now, movement))
   {
     settings.commanded();
   }
-  leftover_judged_ = leftover_judged_ || monitor.run_seen || !drive.reports("run_seen");
   return judgement;
 }
 
-/// The drive says that it has forgotten what it was told since its last return.
-void Inverter::judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
+Judgement Inverter::judgeWords(TimePoint now)
 {
-  if (!monitor.restarted || !settings.connected())
+  return compare(now, refresh.words(), refresh.wordsSentAt(), false);
+}
+
+/// What the drive does with what it was told, and what follows for the parts of this inverter.
+Judgement Inverter::compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete)
+{
+  const MotionVerdict verdict =
+      motion.judge({ words, sent_at, now, complete, movement, stop.pending(), interlock.isFaulted() });
+  if (verdict.faulted)
   {
-    return;
+    interlock.faulted(*verdict.faulted);
   }
-  const Restart restart = evidence.restartRead(*monitor.restarted, sent_at, movement, stop.pending());
+  if (verdict.came_to_rest)
+  {
+    cameToRest(sent_at);
+  }
+  if (verdict.told_after_turn)
+  {
+    movement.seenRunning();
+  }
+  Judgement judgement = verdict.judgement;
+  const std::string restart = noteRestart(words, sent_at);
+  judgement.stop_reason = restart.empty() ? judgement.stop_reason : restart;
+  return judgement;
+}
+
+void Inverter::cameToRest(TimePoint now)
+{
+  movement.stopped(now);
+  interlock.resting();
+}
+
+/// The drive says that it has forgotten what it was told since its last return. Returns the reason to stop it; empty: none.
+std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at)
+{
+  if (!words.restarted || !settings.connected())
+  {
+    return "";
+  }
+  const Restart restart = evidence.restartRead(*words.restarted, sent_at, movement, stop.pending());
   if (restart == Restart::None)
   {
-    return;
+    return "";
   }
   refresh.restartNoted();
   if (restart == Restart::PerhapsBeforeRun)
   {
     settings.connectAgain();
     refresh.askForRun();
-    return;
+    return "";
   }
   settings.restart();
   // What was selected for its block read may count only now.
   block_transfer.tryAgain();
   refresh.useBlock(std::nullopt);
-  if (movement.runPossible() && !stop.pending())
-  {
-    judgement.stop_reason = "the drive has restarted (switched off and on, or reset)";
-  }
-}
-
-Judgement Inverter::judgeWords(TimePoint now)
-{
-  Judgement judgement;
-  const drive::Monitor& words = refresh.words();
-  if (words.tripped().value_or(false) && !interlock.isFaulted())
-  {
-    interlock.faulted(true);
-    early_trip_ = true;
-    judgement.stop_reason = words.unknown_trip ? drive.tripText(words) : "the drive has tripped";
-  }
-  judgeRun(words, refresh.wordsSentAt(), judgement);
-  judgeOperation(now, words, refresh.wordsSentAt(), judgement);
-  judgeRestart(words, refresh.wordsSentAt(), judgement);
-  return judgement;
-}
-
-void Inverter::judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
-{
-  // Words that were asked for before our last change of RUN say nothing about it.
-  const bool evidence = sent_at >= movement.runChangedAt();
-  if (!leftover_judged_ && !drive.reports("run_seen") && !stop.pending() && !movement.runPossible())
-  {
-    judgement.stop_reason = "the drive can't tell whether a RUN of the bus is on";
-    return;
-  }
-  if (!monitor.run_seen || !evidence || stop.pending())
-  {
-    return;
-  }
-  const bool run_seen = *monitor.run_seen;
-  if (movement.runConfirmed() && !run_seen)
-  {
-    judgement.stop_reason = "the drive lost its RUN without a stop of ours (switched off and on, or reset)";
-  }
-  if (movement.zeroUnverified() && run_seen)
-  {
-    judgement.zero_failed = true;
-  }
-  if (movement.zeroUnverified() && !run_seen)
-  {
-    movement.stopped(sent_at);
-    interlock.resting();
-    return;
-  }
-  if (!run_seen || movement.runPossible())
-  {
-    return;
-  }
-  if (!leftover_judged_)
-  {
-    judgement.stop_reason = "a leftover RUN on the bus command is cleared";
-    return;
-  }
-  const bool new_motion = !unexpected_motion_;
-  unexpected_motion_ = true;
-  if (new_motion && config.stop_unexpected_motion)
-  {
-    judgement.stop_reason = "RUN is on without a command of this node";
-  }
-}
-
-void Inverter::judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement)
-{
-  const std::optional<bool>& operation = monitor.operation ? monitor.operation : monitor.running;
-  if (!operation)
-  {
-    return;
-  }
-  if (!movement.runPossible())
-  {
-    operation_seen_ = false;
-    operation_off_since_.reset();
-    if (!*operation)
-    {
-      at_rest_seen_ = true;
-      unexpected_motion_ = unexpected_motion_ && monitor.run_seen.value_or(false);
-    }
-    // A motor that runs out after our stop is no surprise; one that starts from rest is.
-    const bool surprising = *operation && (at_rest_seen_ || !leftover_judged_) && !monitor.run_seen.value_or(false);
-    if (surprising && !unexpected_motion_)
-    {
-      unexpected_motion_ = true;
-      if (config.stop_unexpected_motion && !stop.pending())
-      {
-        judgement.stop_reason = "the motor runs without a command of this node";
-      }
-    }
-    return;
-  }
-  at_rest_seen_ = false;
-  unexpected_motion_ = false;
-  if (movement.turnLostAt() && sent_at > *movement.turnLostAt())
-  {
-    movement.seenRunning();
-    if (!*operation)
-    {
-      judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
-    }
-  }
-  operation_seen_ = operation_seen_ || *operation;
-  const double commanded_hz = movement.target() ? movement.target()->counts * drive.frequencyResolution() : 0.0;
-  const bool lost = operation_seen_ && !*operation && movement.runConfirmed() && commanded_hz >= LOWEST_JUDGED_HZ &&
-                    sent_at >= movement.runChangedAt();
-  if (lasts(operation_off_since_, lost, now, OPERATION_LOST_S))
-  {
-    judgement.stop_reason = "the drive stopped without a stop of ours (STOP key, terminal or safe stop)";
-    operation_seen_ = false;
-  }
-}
-
-void Inverter::compareMovement(TimePoint now, const drive::Monitor& monitor)
-{
-  const bool commanded = movement.runConfirmed() && movement.target() && !movement.target()->zero;
-  const double frequency = monitor.output_frequency.value_or(0.0);
-  const double target = commanded ? movement.target()->counts * drive.frequencyResolution() : 0.0;
-  const bool still = commanded && monitor.output_frequency && frequency <= 0.0 && target >= LOWEST_JUDGED_HZ;
-  lasts(idle_since_, still, now, MOVEMENT_PATIENCE_S);
-  const int sense = commanded && movement.target()->reverse ? -1 : 1;
-  const bool wrong = commanded && monitor.direction && *monitor.direction == -sense && frequency >= last_frequency_;
-  lasts(wrong_direction_since_, wrong, now, MOVEMENT_PATIENCE_S);
-  const bool deviates = commanded && monitor.at_speed.value_or(false) && monitor.output_frequency && frequency > 0.0 &&
-                        std::fabs(frequency - target) > std::max(0.5, 0.02 * target);
-  lasts(deviates_since_, deviates, now, DEVIATION_PATIENCE_S);
-  last_frequency_ = frequency;
+  const bool runs_on = movement.runPossible() && !stop.pending();
+  return runs_on ? "the drive has restarted (switched off and on, or reset)" : "";
 }
 
 // --- status ----------------------------------------------------------------------------------------------------------
@@ -731,21 +598,9 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   {
     findings.push_back(finding);
   }
-  if (unexpected_motion_)
+  for (const std::string& text : motion.warnings(now))
   {
-    warn("runs without a command of this node; look for a second master, the panel or terminals");
-  }
-  if (idle_since_ && now - *idle_since_ >= seconds(MOVEMENT_PATIENCE_S))
-  {
-    warn("does not move although RUN is on; check the enable inputs and who may command the drive");
-  }
-  if (wrong_direction_since_ && now - *wrong_direction_since_ >= seconds(MOVEMENT_PATIENCE_S))
-  {
-    warn("turns in the wrong direction; check the drive's direction settings and hz_per_unit");
-  }
-  if (deviates_since_ && now - *deviates_since_ >= seconds(DEVIATION_PATIENCE_S))
-  {
-    warn("runs at another speed than commanded; check for a takeover at the panel and the drive's frequency limits");
+    warn(text);
   }
   if (interlock.activePublishers(now) > 1)
   {

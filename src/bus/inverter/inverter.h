@@ -18,6 +18,7 @@
 #include "bus/inverter/liveness.h"
 #include "bus/inverter/loopback_knowledge.h"
 #include "bus/inverter/lost_writes.h"
+#include "bus/inverter/motion_watch.h"
 #include "bus/inverter/movement.h"
 #include "bus/inverter/refresh.h"
 #include "bus/inverter/run_evidence.h"
@@ -29,18 +30,6 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What a complete refresh means for safety. The coordinator acts on it.
-struct Judgement
-{
-  /// Stop the inverter and lock it; empty: no reason to.
-  std::string stop_reason;
-  /// RUN is on although a command of 0 took it off: insist, without a lock.
-  bool zero_failed = false;
-  /// The trip is new; its reason in words.
-  bool tripped = false;
-  std::string trip_text;
-};
-
 /// One inverter of the bus: its parts, its link, and what its words mean together.
 class Inverter
 {
@@ -60,6 +49,7 @@ public:
   LoopbackKnowledge loopback;
   Link link;
   RunEvidence evidence;
+  MotionWatch motion;
   BlockTransfer block_transfer;
   /// What came since the last complete status.
   LinkRecord record;
@@ -146,6 +136,8 @@ public:
   std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
+  /// RUN is off at last, as far as anybody can tell: confirmed, or seen off by a read that left at \p now.
+  void cameToRest(TimePoint now);
   /// After a complete refresh.
   Judgement judge(TimePoint now);
   /// After each read of a refresh that goes on: what concerns safety is not put off until the rest has come, or not come.
@@ -186,10 +178,8 @@ private:
   void forgetDrive(bool after_silence);
   void adoptSettings();
   bool writesWear() const;
-  void judgeRestart(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
-  void judgeRun(const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
-  void judgeOperation(TimePoint now, const drive::Monitor& monitor, TimePoint sent_at, Judgement& judgement);
-  void compareMovement(TimePoint now, const drive::Monitor& monitor);
+  Judgement compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete);
+  std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);
   std::vector<Finding> errors(TimePoint now) const;
   std::string exchangeText() const;
   std::string offlineText(TimePoint now) const;
@@ -200,18 +190,6 @@ private:
   CommandError command_error_;
   /// All settings that are left were refused for the moment.
   TimePoint refused_setting_not_before_;
-
-  // commanded against actual
-  bool operation_seen_ = false;
-  std::optional<TimePoint> operation_off_since_;
-  bool at_rest_seen_ = true;
-  std::optional<TimePoint> idle_since_;
-  std::optional<TimePoint> wrong_direction_since_;
-  std::optional<TimePoint> deviates_since_;
-  double last_frequency_ = 0.0;
-  bool unexpected_motion_ = false;
-  bool leftover_judged_ = false;
-  bool early_trip_ = false;
 
   std::uint64_t eeprom_writes_ = 0;
 };

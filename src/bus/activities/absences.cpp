@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bus/report/inverter_report.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -107,11 +109,10 @@ void Absences::writesLost(TimePoint now, Inverter& inverter)
 void Absences::wentOffline(TimePoint now, Inverter& inverter)
 {
   bus_.scheduler.eraseVelocity(inverter.index);
-  services_.fail(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason());
+  services_.fail(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE) + ": " + offlineReason(inverter));
   if (bus_.connected)
   {
-    bus_.outbox.log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(),
-                    inverter.config.name);
+    bus_.outbox.log(Level::Error, inverter.config.name + ": offline: " + offlineReason(inverter), inverter.config.name);
     bus_.outbox.trace(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bus/report/inverter_report.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -146,7 +148,7 @@ void Polls::judge(TimePoint now, Inverter& inverter)
 {
   if (!inverter.known())
   {
-    bus_.outbox.log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
+    bus_.outbox.log(Level::Ok, inverter.config.name + ": " + onlineText(inverter), inverter.config.name);
   }
   const Judgement judgement = inverter.judge(now);
   if (judgement.tripped)

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <string>
 
+#include "bus/report/inverter_report.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -99,9 +101,9 @@ Report Reports::report(TimePoint now) const
     InverterReport entry;
     entry.name = inverter->config.name;
     entry.node = inverter->config.node;
-    entry.status = inverter->status(now);
-    entry.findings = inverter->findings(now);
-    entry.values = inverter->values(now);
+    entry.status = statusOf(*inverter, now);
+    entry.findings = findingsOf(*inverter, now);
+    entry.values = valuesOf(*inverter, now);
     const auto timeout = inverter->settings.driveTimeout();
     if (timeout && !inverter->drive.profile().communication_loss.timeout_parameter.empty())
     {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bus/activities/parameter_gate.h"
+#include "bus/report/inverter_report.h"
 
 namespace inverter_bus
 {
@@ -141,7 +142,7 @@ bool Services::refuse(std::size_t index, const AnswerCallback& callback)
   if (inverter.offline() || !inverter.known())
   {
     bus_.outbox.refuse(callback, ERROR_OFFLINE,
-                       inverter.offline() ? errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason()
+                       inverter.offline() ? errorText(ERROR_OFFLINE) + ": " + offlineReason(inverter)
                                           : "the inverter has not answered yet");
     return true;
   }

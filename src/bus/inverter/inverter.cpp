@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bus/link/own_exceptions.h"
-#include "wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -15,8 +14,6 @@ namespace
 {
 // Share of the drive's own time-out after which it is served whatever else waits.
 constexpr double TIMEOUT_SHARE = 0.8;
-// A drive that has answered so lately is there.
-constexpr double LATELY_S = 2.0;
 constexpr double CONNECT_PAUSE_S = 0.5;
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
@@ -117,7 +114,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   // What refuses to tell its status has been there all the time: what it is need not be asked again.
   const bool refused = isRefusal(error_id);
   link.goOffline(error_id);
-  command_error_.wentOffline();
+  command_error.wentOffline();
   interlock.offline();
   stop.forgetConfirmation();
   movement.drop();
@@ -300,6 +297,11 @@ void Inverter::noteEepromWrite()
   ++eeprom_writes_;
 }
 
+std::uint64_t Inverter::eepromWrites() const
+{
+  return eeprom_writes_;
+}
+
 bool Inverter::probesByLoopback() const
 {
   // Two ways to ask in turn, until it is known that the drive has the loop-back.
@@ -415,31 +417,6 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
 
 // --- status ----------------------------------------------------------------------------------------------------------
 
-InverterStatus Inverter::status(TimePoint now) const
-{
-  InverterStatus status;
-  status.index = index;
-  status.model = settings.model();
-  status.stamp = refresh.stamp();
-  status.has_stamp = refresh.hasStamp();
-  const bool answered_lately = link.lastAnswer() && now - *link.lastAnswer() < seconds(LATELY_S);
-  status.communication_error = link.offline();
-  status.refuses = link.offline() && liveness.refusesForTheMoment() && answered_lately;
-  if (!status.communication_error)
-  {
-    status.monitor = refresh.monitor(now);
-  }
-  status.run_command = movement.runCommand();
-  status.move_velocity_active = movement.active();
-  status.reset_active = reset_active;
-  status.stop_active = stop.pending();
-  status.locked = interlock.locked(now);
-  showError(now, status);
-  const auto& target = movement.target();
-  status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
-  return status;
-}
-
 Obstacles Inverter::obstacles() const
 {
   Obstacles obstacles;
@@ -452,66 +429,30 @@ Obstacles Inverter::obstacles() const
   return obstacles;
 }
 
-/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
-void Inverter::showError(TimePoint now, InverterStatus& status) const
-{
-  if (status.communication_error && link.error() != 0 && !command_error_.countsWhileOffline())
-  {
-    status.error_id = link.error();
-    status.error_text = exchangeText();
-    return;
-  }
-  if (lost_writes.raised())
-  {
-    status.error_id = wire::ERROR_TIMEOUT;
-    status.error_text = lost_writes.text();
-  }
-  else if (command_error_.id() != 0)
-  {
-    Obstacles now_there = obstacles();
-    now_there.locked = interlock.locked(now);
-    status.error_id = command_error_.id();
-    status.error_text = command_error_.text(now_there, link.error() == 0 ? "" : exchangeText());
-  }
-  else if (link.error() != 0)
-  {
-    status.error_id = link.error();
-    status.error_text = exchangeText();
-  }
-}
-
-/// Why it is offline; else in the drive's own words where it has answered.
-std::string Inverter::exchangeText() const
-{
-  const std::string why = link.offline() && link.error() != wire::ERROR_PORT_LOST ? liveness.reason() : "";
-  const std::string text = why.empty() ? drive.exceptionText(link.error()) : why;
-  return text.empty() ? errorText(link.error(), link.gatewayCode()) : text;
-}
-
 void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
 {
-  command_error_.failed(error_id, text);
+  command_error.failed(error_id, text);
 }
 
 void Inverter::velocityConfirmed()
 {
-  command_error_.confirmed();
+  command_error.confirmed();
 }
 
 void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
 {
-  command_error_.set(error_id, text, obstacles());
+  command_error.set(error_id, text, obstacles());
 }
 
 void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
                               const std::string& own_text)
 {
-  command_error_.setForOther(error_id, reasons, own_error_id, own_text, obstacles());
+  command_error.setForOther(error_id, reasons, own_error_id, own_text, obstacles());
 }
 
 void Inverter::acceptCommand()
 {
-  command_error_.clear();
+  command_error.clear();
 }
 
 void Inverter::noteExchangeError(std::uint16_t error_id)
@@ -522,151 +463,6 @@ void Inverter::noteExchangeError(std::uint16_t error_id)
 void Inverter::noteProbed(const wire::Reply& reply)
 {
   link.probed(reply);
-}
-
-std::string Inverter::onlineText() const
-{
-  return "online; locked until it is sent 0, or nothing for " + wire::shownDuration(interlock.silenceNeeded()) +
-         (drive.sequence("forward") == nullptr && drive.sequence("reverse") == nullptr
-              ? "; it gets no velocity, see /diagnostics"
-              : "");
-}
-
-std::string Inverter::offlineReason() const
-{
-  const std::string seen = record.text(drive);
-  return exchangeText() +
-         (seen.empty() || link.error() == wire::ERROR_PORT_LOST ? "" : "; since the last complete status " + seen);
-}
-
-std::string Inverter::offlineText(TimePoint now) const
-{
-  std::string text = "offline (" + errorIdText(link.error()) + " " + offlineReason() + "; last answer ";
-  text += link.lastAnswer() ? wire::shownDuration(now - *link.lastAnswer()) + " ago)" : "never)";
-  return text + (link.error() == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
-}
-
-/// Before the first complete status.
-std::string Inverter::silenceText() const
-{
-  const std::string seen = record.text(drive);
-  return seen.empty() ? "has not been asked yet" : "no complete status yet: " + seen + "; " + record.advice();
-}
-
-std::vector<Finding> Inverter::errors(TimePoint now) const
-{
-  std::vector<Finding> findings;
-  if (link.offline() && link.error() == wire::ERROR_PORT_LOST)
-  {
-    findings.push_back({ Level::Error, "offline (" + errorIdText(link.error()) +
-                                           "), since the port is not open: what to do about it is told of the bus" });
-    return findings;
-  }
-  if (link.offline())
-  {
-    findings.push_back({ Level::Error, offlineText(now) });
-    return findings;
-  }
-  if (lost_writes.raised())
-  {
-    findings.push_back(
-        { Level::Error,
-          lost_writes.text() + " (" + std::to_string(lost_writes.inARow()) +
-              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
-              "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
-  }
-  if (interlock.isFaulted())
-  {
-    const drive::Monitor& told = refresh.fresh();
-    const std::uint16_t code = told.fault_code.value_or(0);
-    const std::string why =
-        told.unknown_trip ? drive.tripText(told) : std::to_string(code) + " " + drive.faultText(code);
-    findings.push_back({ Level::Error, "tripped: " + why + "; remove the cause, then call reset" });
-  }
-  return findings;
-}
-
-std::vector<Finding> Inverter::findings(TimePoint now) const
-{
-  std::vector<Finding> findings = errors(now);
-  const auto warn = [&](const std::string& text) { findings.push_back({ Level::Warn, text }); };
-  if (!link.offline() && !link.known())
-  {
-    warn(silenceText());
-  }
-  for (const Finding& finding : settings.findings())
-  {
-    findings.push_back(finding);
-  }
-  for (const std::string& text : motion.warnings(now))
-  {
-    warn(text);
-  }
-  if (interlock.activePublishers(now) > 1)
-  {
-    warn("several publishers command this inverter");
-  }
-  if (link.latestReply() > Duration::zero())
-  {
-    warn("a reply came " + wire::shownDuration(link.latestReply()) +
-         " after its request; a response_timeout above that "
-         "would have caught it");
-  }
-  for (const std::string& mistake : drive.profile().mistakes)
-  {
-    warn("left out: " + mistake);
-  }
-  if (!drive.profile().unconfirmed.empty())
-  {
-    warn("unconfirmed in the profile: " + drive.unconfirmedText());
-  }
-  if (drive.profile().block && settings.blockSlots() && !refresh.block())
-  {
-    warn(block_transfer.whyNot(*settings.blockSlots()));
-  }
-  if (writesWear())
-  {
-    warn("every change of the set-point is written to the drive's EEPROM (" + std::to_string(eeprom_writes_) +
-         " writes so far): " + drive.armingAdvice("connect"));
-  }
-  return findings;
-}
-
-/// The set-point goes to the EEPROM, because the drive could not be told otherwise at connect.
-bool Inverter::writesWear() const
-{
-  return drive.wears("frequency") && !settings.connected() && drive.sequence("forward") != nullptr;
-}
-
-std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now) const
-{
-  std::vector<std::pair<std::string, std::string>> values;
-  values.emplace_back("node", std::to_string(config.node));
-  values.emplace_back("drive", drive.profile().name);
-  values.emplace_back("model", drive.profile().title);
-  values.emplace_back("age of status",
-                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", wire::shownDuration(link.slowestReply()));
-  values.emplace_back("returns", std::to_string(link.returns()));
-  values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
-  if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
-  {
-    values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));
-  }
-  if (drive.profile().block)
-  {
-    values.emplace_back("block read", refresh.block() ? "in use: " + listed(config.block_read) : "not used");
-  }
-  for (const auto& value : refresh.chosenValues())
-  {
-    values.push_back(value);
-  }
-  for (const auto& value : settings.values())
-  {
-    values.push_back(value);
-  }
-  return values;
 }
 
 InverterView Inverter::view(TimePoint now, Duration deadline_margin) const

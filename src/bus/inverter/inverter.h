@@ -51,6 +51,7 @@ public:
   RunEvidence evidence;
   MotionWatch motion;
   BlockTransfer block_transfer;
+  CommandError command_error;
   /// What came since the last complete status.
   LinkRecord record;
   LostWrites lost_writes;
@@ -120,6 +121,7 @@ public:
   std::string wrongDrive() const;
   /// The drive's EEPROM has been written once more by this node.
   void noteEepromWrite();
+  std::uint64_t eepromWrites() const;
   /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
   /// (contract, 8.8).
   bool loopbackUsable() const;
@@ -130,10 +132,6 @@ public:
   /// Longest turnaround seen while the drive answered.
   Duration slowestReply() const;
   void lateReply(Duration delay);
-  /// What the log says when it answers (again), and what is to be done before it moves.
-  std::string onlineText() const;
-  /// What the log says when it goes offline.
-  std::string offlineReason() const;
 
   // --- status -----------------------------------------------------------------------------------------------------
   /// RUN is off at last, as far as anybody can tell: confirmed, or seen off by a read that left at \p now.
@@ -142,9 +140,8 @@ public:
   Judgement judge(TimePoint now);
   /// After each read of a refresh that goes on: what concerns safety is not put off until the rest has come, or not come.
   Judgement judgeWords(TimePoint now);
-  InverterStatus status(TimePoint now) const;
-  std::vector<Finding> findings(TimePoint now) const;
-  std::vector<std::pair<std::string, std::string>> values(TimePoint now) const;
+  /// What stands in the way of a velocity now; locked is not asked for.
+  Obstacles obstacles() const;
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
   void refuseCommand(std::uint16_t error_id, const std::string& text);
@@ -177,17 +174,9 @@ public:
 private:
   void forgetDrive(bool after_silence);
   void adoptSettings();
-  bool writesWear() const;
   Judgement compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete);
   std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);
-  std::vector<Finding> errors(TimePoint now) const;
-  std::string exchangeText() const;
-  std::string offlineText(TimePoint now) const;
-  std::string silenceText() const;
-  Obstacles obstacles() const;
-  void showError(TimePoint now, InverterStatus& status) const;
 
-  CommandError command_error_;
   /// All settings that are left were refused for the moment.
   TimePoint refused_setting_not_before_;
 

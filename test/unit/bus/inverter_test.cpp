@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/link/own_exceptions.h"
+#include "bus/report/inverter_report.h"
 #include "support/bus_fixture.h"
 
 namespace inverter_bus
@@ -199,10 +200,10 @@ TEST_F(Mx2BehindAGateway, theGatewaysCodeIsShown)
     inverter_.noteExchange(reply);
     inverter_.failed(at(0), reply.error_id);
   }
-  EXPECT_EQ("no reply in time (the gateway answered with exception E0H)", inverter_.status(at(0)).error_text);
+  EXPECT_EQ("no reply in time (the gateway answered with exception E0H)", statusOf(inverter_, at(0)).error_text);
   inverter_.noteExchange(lost());
   inverter_.failed(at(0), 0x0205);
-  EXPECT_EQ("no reply in time", inverter_.status(at(0)).error_text);
+  EXPECT_EQ("no reply in time", statusOf(inverter_, at(0)).error_text);
 }
 
 TEST(Vfs11BehindAGateway, refusesWith04OnlyWhileItSendsData)

@@ -41,8 +41,8 @@ void Reports::publishSlowly(TimePoint now)
   const bool busy = !bus_.gateway.free(now);
   for (const auto& inverter : bus_.inverters)
   {
-    const bool held_up = busy && inverter->known();
-    if ((inverter->offline() || held_up) &&
+    const bool held_up = busy && inverter->link.known();
+    if ((inverter->link.offline() || held_up) &&
         now - bus_.outbox.lastPublished(inverter->index) >= seconds(STATUS_PERIOD_OFFLINE_S))
     {
       bus_.outbox.publish(now, *inverter);
@@ -82,7 +82,7 @@ BusStatus Reports::busStatus(TimePoint now) const
   status.stop_latency_max = toSeconds(stops_.latencyMax());
   for (const auto& inverter : bus_.inverters)
   {
-    if (inverter->offline())
+    if (inverter->link.offline())
     {
       status.offline_nodes.push_back(inverter->config.node);
     }

@@ -52,32 +52,12 @@ void Inverter::answered(const wire::Reply& reply)
   probes = 0;
 }
 
-void Inverter::beginTrial(Duration delay)
-{
-  link.beginTrial(std::min(delay, seconds(config.response_timeout)));
-}
-
-bool Inverter::onTrial() const
-{
-  return link.onTrial();
-}
-
 Duration Inverter::endTrial(std::uint16_t error_id)
 {
   refresh_tries = 0;
   settings_tries = 0;
   forgetDrive(!isRefusal(error_id));
   return link.endTrial();
-}
-
-bool Inverter::silent() const
-{
-  return link.silent();
-}
-
-void Inverter::noteCost(bool probe, wire::Outcome outcome, Duration cost)
-{
-  link.noteCost(probe, outcome, cost);
 }
 
 bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
@@ -102,11 +82,6 @@ bool Inverter::refusedStatus(std::uint16_t error_id)
     return true;
   }
   return false;
-}
-
-bool Inverter::overdue(TimePoint now, Duration period) const
-{
-  return !link.offline() && liveness.overdue(now, period);
 }
 
 void Inverter::goOffline(std::uint16_t error_id)
@@ -143,31 +118,6 @@ void Inverter::forgetDrive(bool after_silence)
   }
 }
 
-bool Inverter::offline() const
-{
-  return link.offline();
-}
-
-bool Inverter::known() const
-{
-  return link.known();
-}
-
-bool Inverter::everKnown() const
-{
-  return link.everKnown();
-}
-
-void Inverter::expectSilence(TimePoint now, Duration duration)
-{
-  liveness.deafUntil(now + duration);
-}
-
-void Inverter::noDeafness()
-{
-  liveness.heard();
-}
-
 wire::Request Inverter::prepared(wire::Request request) const
 {
   request.response_timeout = seconds(config.response_timeout);
@@ -186,7 +136,7 @@ bool Inverter::connectDue(TimePoint now) const
 {
   // Nothing but reads goes to a port of the drive's own before it has told its status (contract, 8.8).
   const bool must_wait = config.ownPort() && !link.everKnown() && settings.nextWrites();
-  return !silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent() && !must_wait;
+  return !link.silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent() && !must_wait;
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)
@@ -275,21 +225,11 @@ bool Inverter::mayRepeatWords(TimePoint now) const
   return evidence.shows(now, movement) && !stop.pending() && !interlock.isFaulted();
 }
 
-bool Inverter::mustBeSeenRunning() const
-{
-  return movement.turnLostAt() && (drive.reports("operation") || drive.reports("running"));
-}
-
 bool Inverter::mayRun() const
 {
   const drive::Monitor& monitor = refresh.fresh();
   return movement.runPossible() || monitor.operation.value_or(false) || monitor.running.value_or(false) ||
          monitor.output_frequency.value_or(0.0) > 0.0;
-}
-
-std::string Inverter::wrongDrive() const
-{
-  return settings.identity() == Identity::Right ? "" : settings.identityText();
 }
 
 void Inverter::noteEepromWrite()
@@ -324,20 +264,9 @@ wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) c
   return request;
 }
 
-Duration Inverter::slowestReply() const
-{
-  return link.slowestReply();
-}
-
-void Inverter::lateReply(Duration delay)
-{
-  link.cameLate(delay);
-  record.noteLate();
-}
-
 // --- judgement -------------------------------------------------------------------------------------------------------
 
-Judgement Inverter::judge(TimePoint now)
+Judgement Inverter::statusComplete(TimePoint now)
 {
   if (link.statusComplete())
   {
@@ -354,7 +283,7 @@ Judgement Inverter::judge(TimePoint now)
   return judgement;
 }
 
-Judgement Inverter::judgeWords(TimePoint now)
+Judgement Inverter::wordsRead(TimePoint now)
 {
   return compare(now, refresh.words(), refresh.wordsSentAt(), false);
 }
@@ -425,51 +354,15 @@ Obstacles Inverter::obstacles() const
   obstacles.stop_pending = interlock.stopPending();
   obstacles.reset_active = reset_active;
   obstacles.in_setup = inSetup();
-  obstacles.wrong_drive = !wrongDrive().empty();
+  obstacles.wrong_drive = settings.identity() != Identity::Right;
   return obstacles;
-}
-
-void Inverter::velocityFailed(std::uint16_t error_id, const std::string& text)
-{
-  command_error.failed(error_id, text);
-}
-
-void Inverter::velocityConfirmed()
-{
-  command_error.confirmed();
-}
-
-void Inverter::refuseCommand(std::uint16_t error_id, const std::string& text)
-{
-  command_error.set(error_id, text, obstacles());
-}
-
-void Inverter::refuseForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
-                              const std::string& own_text)
-{
-  command_error.setForOther(error_id, reasons, own_error_id, own_text, obstacles());
-}
-
-void Inverter::acceptCommand()
-{
-  command_error.clear();
-}
-
-void Inverter::noteExchangeError(std::uint16_t error_id)
-{
-  link.failed(error_id);
-}
-
-void Inverter::noteProbed(const wire::Reply& reply)
-{
-  link.probed(reply);
 }
 
 InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 {
   InverterView view;
   const drive::Monitor& monitor = refresh.fresh();
-  view.offline = silent();
+  view.offline = link.silent();
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = link.known() && tells && !movement.runPossible() && !movement.target() &&
                  !monitor.operation.value_or(false) && !monitor.running.value_or(false) &&
@@ -496,14 +389,6 @@ std::optional<TimePoint> Inverter::serveBy(Duration deadline_margin) const
   const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
   // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
   return *link.lastAnswer() + std::max(latest, *timeout / 2);
-}
-
-std::vector<drive::ReadBlock> Inverter::reads() const
-{
-  std::vector<drive::ReadBlock> reads = refresh.fastBlocks();
-  const std::vector<drive::ReadBlock> slow = refresh.slowBlocks();
-  reads.insert(reads.end(), slow.begin(), slow.end());
-  return reads;
 }
 }  // namespace bus
 }  // namespace inverter_bus

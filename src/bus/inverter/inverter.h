@@ -30,13 +30,17 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// One inverter of the bus: its parts, its link, and what its words mean together.
+/// One inverter of the bus: an aggregate of parts, each with a business of its own, and what happens to several of them at
+/// once. Not thread safe; the bus guards it.
 class Inverter
 {
 public:
+  /// \p config and \p drive must outlive it. \p offline_after failures in a row make it offline, a lost frame of a velocity
+  /// is repeated \p retries times (bus parameters).
   Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after, int retries);
 
-  // --- parts ------------------------------------------------------------------------------------------------------
+  // --- parts --------------------------------------------------------------------------------------------------------
+  /// Its place in node order.
   const std::size_t index;
   const InverterConfig& config;
   const drive::Drive& drive;
@@ -57,44 +61,35 @@ public:
   LostWrites lost_writes;
   Liveness liveness;
 
-  // --- link -------------------------------------------------------------------------------------------------------
-  /// A valid reply came, of whatever kind. It makes an offline inverter worth a trial, and no more: it is back with a complete
-  /// status only (contract, 8.15).
+  // --- the link -----------------------------------------------------------------------------------------------------
+  /// A valid reply came, of whatever kind.
   void answered(const wire::Reply& reply);
-  /// A reply to a probe came late, \p delay after its request: worth a trial, too.
-  void beginTrial(Duration delay);
-  /// Offline, but it answers: its settings and its status are being read, at the probes' cost if that leads to nothing.
-  bool onTrial() const;
-  /// The trial has led to nothing, since an exchange ended with \p error_id. Returns what it has cost.
-  Duration endTrial(std::uint16_t error_id);
-  /// Offline, and it is not even known to answer.
-  bool silent() const;
-  /// An exchange with it has ended (bookkeeping of probes and trials).
-  void noteCost(bool probe, wire::Outcome outcome, Duration cost);
   /// An exchange failed after its repeats. Returns true if the inverter has just gone offline. Lost writes of command words
   /// alone don't take it offline (contract, 8.1): a read must have been lost among them.
   bool failed(TimePoint now, std::uint16_t error_id, bool write = false);
   /// The run words were refused. Returns true if the inverter has just gone offline.
   bool refusedStatus(std::uint16_t error_id);
-  /// No complete status has come for too long (contract, 8.15); \p period of its refreshes.
-  bool overdue(TimePoint now, Duration period) const;
   /// The port is gone, or the inverter is given up: offline at once.
   void goOffline(std::uint16_t error_id);
-  bool offline() const;
-  /// A complete status has come since start or return.
-  bool known() const;
-  /// A complete status has come since the node was started.
-  bool everKnown() const;
+  /// The trial of an offline inverter has led to nothing, since an exchange ended with \p error_id. Returns its price.
+  Duration endTrial(std::uint16_t error_id);
   /// When it must hear something, because of a communication time-out of its own; nothing: it has none.
   std::optional<TimePoint> serveBy(Duration deadline_margin) const;
-  /// All reads that a refresh may be made of.
-  std::vector<drive::ReadBlock> reads() const;
-  /// Silence is expected for so long (after a step of a trip reset).
-  void expectSilence(TimePoint now, Duration duration);
-  /// It has answered a frame of the reset: if it is deaf, then from the next one on.
-  void noDeafness();
 
+  // --- requests -----------------------------------------------------------------------------------------------------
+  /// \p request with the time-outs and silences of this inverter.
   wire::Request prepared(wire::Request request) const;
+  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
+  /// (contract, 8.8).
+  bool loopbackUsable() const;
+  /// The next probe() is a loop-back, if the drive's profile has one.
+  bool probesByLoopback() const;
+  /// The question that shows whether an offline drive is back.
+  wire::Request probe(std::uint16_t number, Duration response_timeout) const;
+  /// A refresh may repeat the confirmed command words (contract, 4.1).
+  bool mayRepeatWords(TimePoint now) const;
+
+  // --- what is settled at connect -----------------------------------------------------------------------------------
   /// Identity and what the drive must be told are settled before its first status.
   bool connectDue(TimePoint now) const;
   /// After each exchange for its settings.
@@ -103,60 +98,33 @@ public:
   std::vector<std::pair<std::string, std::uint32_t>> blockToConfigure();
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
+  /// A parameter was written through this node.
+  void parameterWritten(const std::string& name);
+  /// The drive's EEPROM has been written once more by this node.
+  void noteEepromWrite();
+  std::uint64_t eepromWrites() const;
+
+  // --- status -------------------------------------------------------------------------------------------------------
   /// An exchange ended; a lost one ends all that was proven of RUN.
   void noteExchange(const wire::Reply& reply);
   /// It was a read of a refresh (that goes on, with \p more): what it shows of RUN.
   void noteStatus(const wire::Reply& reply, bool more);
-  /// A parameter was written through this node.
-  void parameterWritten(const std::string& name);
-  /// A parameter is being written in the drive's setup area, where it can't run.
-  bool inSetup() const;
-  /// A refresh may repeat the confirmed command words (rule 4.1).
-  bool mayRepeatWords(TimePoint now) const;
-  /// The motor may turn, as far as anybody can tell.
-  bool mayRun() const;
-  /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
-  bool mustBeSeenRunning() const;
-  /// Why the drive gets no command but a stop; empty: it does.
-  std::string wrongDrive() const;
-  /// The drive's EEPROM has been written once more by this node.
-  void noteEepromWrite();
-  std::uint64_t eepromWrites() const;
-  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
-  /// (contract, 8.8).
-  bool loopbackUsable() const;
-  /// The next probe() is a loop-back, if the drive's profile has one.
-  bool probesByLoopback() const;
-  /// The question that shows whether an offline drive is back.
-  wire::Request probe(std::uint16_t number, Duration response_timeout) const;
-  /// Longest turnaround seen while the drive answered.
-  Duration slowestReply() const;
-  void lateReply(Duration delay);
-
-  // --- status -----------------------------------------------------------------------------------------------------
+  /// After each read of a refresh that goes on: what concerns safety is not put off until the rest has come, or not come.
+  Judgement wordsRead(TimePoint now);
+  /// After a complete refresh.
+  Judgement statusComplete(TimePoint now);
   /// RUN is off at last, as far as anybody can tell: confirmed, or seen off by a read that left at \p now.
   void cameToRest(TimePoint now);
-  /// After a complete refresh.
-  Judgement judge(TimePoint now);
-  /// After each read of a refresh that goes on: what concerns safety is not put off until the rest has come, or not come.
-  Judgement judgeWords(TimePoint now);
+
+  // --- answers ------------------------------------------------------------------------------------------------------
+  /// The motor may turn, as far as anybody can tell.
+  bool mayRun() const;
+  /// A parameter is being written in the drive's setup area, where it can't run.
+  bool inSetup() const;
   /// What stands in the way of a velocity now; locked is not asked for.
   Obstacles obstacles() const;
+  /// What the scheduler must know of it.
   InverterView view(TimePoint now, Duration deadline_margin) const;
-
-  void refuseCommand(std::uint16_t error_id, const std::string& text);
-  /// As a member of a group that was refused for the sake of another one, for what stood in its own way see CommandError.
-  void refuseForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
-                      const std::string& own_text);
-  void acceptCommand();
-  /// A velocity that was accepted has failed at the drive; shown until one is confirmed, since a stream of accepted ones
-  /// would hide it.
-  void velocityFailed(std::uint16_t error_id, const std::string& text);
-  /// One was confirmed, or a 0 came.
-  void velocityConfirmed();
-  void noteExchangeError(std::uint16_t error_id);
-  /// How a probe ended: while it is offline that is the reason, not the port that was gone before.
-  void noteProbed(const wire::Reply& reply);
 
   bool reset_active = false;
   /// Frames of a job have led the drive into its setup area.

@@ -35,7 +35,7 @@ protected:
       more = inverter_.refresh.received(reply(answerTo(request, coils), at(time_), at(sent_at)));
     }
     EXPECT_TRUE(inverter_.refresh.takeComplete());
-    return inverter_.judge(at(time_));
+    return inverter_.statusComplete(at(time_));
   }
 
   /// One refresh in which the drive refuses every read: busy.
@@ -49,7 +49,7 @@ protected:
       time_ += 10;
       more = inverter_.refresh.refused(exception(function, 0x06, at(time_)));
     }
-    return inverter_.judge(at(time_));
+    return inverter_.statusComplete(at(time_));
   }
 
   static std::string answerTo(const std::string& request, const std::string& coils)

@@ -58,7 +58,7 @@ struct Bus::Implementation
   const Configuration configuration;
   std::unique_ptr<wire::Port> port;
   Observer& observer;
-  mutable wire::SteadyClock clock;
+  mutable util::SteadyClock clock;
   std::unique_ptr<wire::Protocol> protocol;
   wire::Line line;
   FlightRecorder recorder;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
@@ -101,7 +101,7 @@ void Coordinator::noteRunning(TimePoint now)
   {
     return;
   }
-  log(Level::Warn, "this node did not run for " + wire::shownDuration(frozen) +
+  log(Level::Warn, "this node did not run for " + util::durationText(frozen) +
                        ": it was stopped, or its machine is overloaded; nothing was sent meanwhile, no stop either");
   for (const auto& inverter : inverters_)
   {
@@ -747,7 +747,7 @@ void Coordinator::noteStopLatency(Duration latency)
   const Duration in_gateway = worstStop() - budget_.worst_stop - longestReplyDelay();
   if (latency > budget_.longest_exchange + longestReplyDelay() + line_.timing().characters(64) + in_gateway)
   {
-    outputs_.traces.push_back("stop took " + wire::shownDuration(latency) + " to the wire");
+    outputs_.traces.push_back("stop took " + util::durationText(latency) + " to the wire");
   }
 }
 }  // namespace bus

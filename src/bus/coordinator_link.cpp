@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "bus/coordinator.h"
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 // The way to the drives: what a gateway still works on, connections that are closed by their other end, links that have gone
 // mute, telnet servers.
@@ -97,7 +97,7 @@ void Coordinator::tellOfTheGateway()
     told_of_gateway_ = true;
     log(Level::Warn, "port " + configuration_.bus.port +
                          ": requests to a silent station are left unanswered: from now on " +
-                         wire::shownDuration(gateway_.wait()) + " is waited for instead of gateway_timeout");
+                         util::durationText(gateway_.wait()) + " is waited for instead of gateway_timeout");
   }
 }
 
@@ -146,8 +146,8 @@ void Coordinator::tellOfCostlyStop(Inverter& inverter)
   {
     const std::string& name = neighbour->config.name;
     log(Level::Warn, inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
-                         wire::shownDuration(gateway_.block()) + ", longer than the time-out of " + name +
-                         " itself, which runs (" + wire::shownDuration(*neighbour->settings.driveTimeout()) +
+                         util::durationText(gateway_.block()) + ", longer than the time-out of " + name +
+                         " itself, which runs (" + util::durationText(*neighbour->settings.driveTimeout()) +
                          "): " + name + " may trip or stop by that; shorten the gateway's time-out");
   }
 }
@@ -223,7 +223,7 @@ std::string Coordinator::returnText() const
   }
   const auto offline =
       std::count_if(inverters_.begin(), inverters_.end(), [](const auto& inverter) { return inverter->offline(); });
-  return wire::shownDuration(Budget::longestReturn(gatewayBlock(), static_cast<std::size_t>(offline)));
+  return util::durationText(Budget::longestReturn(gatewayBlock(), static_cast<std::size_t>(offline)));
 }
 
 std::optional<Finding> Coordinator::gatewayFinding() const
@@ -242,10 +242,10 @@ std::optional<Finding> Coordinator::gatewayFinding() const
                     "that it says so within response_timeout" };
   }
   return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
-                                   wire::shownDuration(gateway_.block()) +
+                                   util::durationText(gateway_.block()) +
                                    ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
                                    "(1 + repeats) below response_timeout (" +
-                                   wire::shownDuration(allowed) + ")" };
+                                   util::durationText(allowed) + ")" };
 }
 
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.

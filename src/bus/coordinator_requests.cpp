@@ -4,7 +4,7 @@
 #include <array>
 
 #include "bus/coordinator.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 // What users ask of the bus: velocities, stops and services.
 
@@ -104,8 +104,8 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
   }
   else if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
   {
-    judged.text =
-        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
+    judged.text = "locked for " + util::printable(publisher.name) +
+                  ", which has neither sent 0 nor been silent since the last stop";
   }
   return judged.error_id;
 }
@@ -741,12 +741,12 @@ void Coordinator::refuseParameter(const Inverter& inverter, const std::string& n
   if (!any)
   {
     refuseCall(callback, ERROR_NOT_ARMED,
-               "the profile " + profile.name + " knows no parameter's place: give '" + wire::shown(name) +
+               "the profile " + profile.name + " knows no parameter's place: give '" + util::printable(name) +
                    "' under overrides");
     return;
   }
   refuseCall(callback, ERROR_OUT_OF_RANGE,
-             "'" + wire::shown(name) + "' is no parameter of " + profile.name +
+             "'" + util::printable(name) + "' is no parameter of " + profile.name +
                  "; use the drive's own code, or 0x and the number printed in its manual");
 }
 
@@ -759,7 +759,7 @@ std::uint16_t Coordinator::judgeWrite(const Inverter& inverter, const std::strin
   const auto parameter = inverter.drive.findParameter(name, true);
   if (known == profile.parameters.end())
   {
-    why = "'" + wire::shown(name) + "' is no parameter of " + profile.name + " that can be written";
+    why = "'" + util::printable(name) + "' is no parameter of " + profile.name + " that can be written";
     return ERROR_OUT_OF_RANGE;
   }
   if (parameter)

@@ -13,7 +13,7 @@
 #include <ros/callback_queue_interface.h>
 #include <boost/thread/thread.hpp>
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

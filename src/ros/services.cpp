@@ -13,7 +13,7 @@
 #include "inverter_bus/wire/request.h"
 #include "ros/status_conversion.h"
 #include "ros/steady_event.h"
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 namespace inverter_bus
 {
@@ -57,7 +57,7 @@ bus::Answer ask(double bound, const std::function<void(bus::AnswerCallback)>& st
   {
     return slot->answer;
   }
-  return timeoutAnswer("the bus gave no answer in " + wire::shownNumber(bound + MARGIN) + " s: see /diagnostics");
+  return timeoutAnswer("the bus gave no answer in " + util::numberText(bound + MARGIN) + " s: see /diagnostics");
 }
 
 template <typename Response>

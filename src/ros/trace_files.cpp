@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "ros/trace_text.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -189,7 +189,7 @@ std::string TraceFiles::write(const bus::TraceDump& dump, const std::string& kin
     return "";
   }
   removeOldFiles(path, kind);
-  const std::string reason = wire::shown(dump.reason);
+  const std::string reason = util::printable(dump.reason);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     last_ = File{ path, reason };

@@ -14,7 +14,7 @@
 #include "bus/configuration/configuration_keys.h"
 #include "bus/configuration/configuration_scan_list.h"
 #include "bus/configuration/configuration_section.h"
-#include "config/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -241,7 +241,7 @@ Section withoutForeignKeys(const Value& parameters, const std::string& place, co
     const bool foreign = unknown && !isLibraryKey(key) && remarkOn(key).empty();
     if (foreign)
     {
-      remarks->push_back(drive::oneLine(place + ": parameter '" + config::shown(key) +
+      remarks->push_back(drive::oneLine(place + ": parameter '" + util::printable(key) +
                                         "' = " + describe(entry->second) +
                                         " is none of this node's and is ignored (another node's, or one that a launch "
                                         "file sets for all of them)"));

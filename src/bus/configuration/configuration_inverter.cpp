@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bus/configuration/configuration_yaml.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -85,7 +85,7 @@ void checkSkipped(const Section& entry, const std::string& field)
   }
   if (drive::skippableFields().count(field) == 0)
   {
-    entry.fail("skip", "holds '" + wire::shown(field) + "', which is no field of the status", allowed);
+    entry.fail("skip", "holds '" + util::printable(field) + "', which is no field of the status", allowed);
   }
 }
 
@@ -159,7 +159,7 @@ drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config,
     {
       throw;
     }
-    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + wire::shown(config.drive) + "': ";
+    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + util::printable(config.drive) + "': ";
     throw drive::ConfigurationError(drive::oneLine(place + error.what()));
   }
 }

@@ -8,8 +8,8 @@
 
 #include "bus/configuration/configuration_keys.h"
 #include "config/scalar.h"
-#include "wire/shown.h"
-#include "wire/shown_number.h"
+#include "util/number_text.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -22,7 +22,7 @@ constexpr std::size_t LONGEST_MESSAGE = 2000;
 
 std::string numberText(double number)
 {
-  return wire::shownNumber(number, 9);
+  return util::numberText(number, 9);
 }
 
 std::string rangeText(const Range& range)
@@ -82,7 +82,7 @@ std::string describeWhole(const Value& value)
 
 std::string describe(const Value& value)
 {
-  return wire::shown(describeWhole(value), LONGEST_VALUE);
+  return util::printable(describeWhole(value), LONGEST_VALUE);
 }
 
 std::string join(const std::vector<std::string>& names)
@@ -96,7 +96,7 @@ std::string join(const std::vector<std::string>& names)
 }
 
 Section::Section(const Value& value, const std::string& place, std::shared_ptr<Remarks> remarks)
-  : place_(wire::shown(place, LONGEST_MESSAGE)), remarks_(std::move(remarks))
+  : place_(util::printable(place, LONGEST_MESSAGE)), remarks_(std::move(remarks))
 {
   if (value.type != Value::Type::Map)
   {
@@ -131,7 +131,7 @@ void Section::refuseUnknownKeys(const std::vector<std::string>& known) const
     if (std::find(known.begin(), known.end(), entry.first) == known.end())
     {
       const std::string remark = remarkOn(entry.first);
-      throw drive::ConfigurationError(entry.second.place + ": unknown key '" + wire::shown(entry.first) +
+      throw drive::ConfigurationError(entry.second.place + ": unknown key '" + util::printable(entry.first) +
                                       "' = " + describe(entry.second.value) + (remark.empty() ? "" : ": " + remark) +
                                       "; allowed: " + join(known));
     }
@@ -322,7 +322,7 @@ void Section::fail(const std::string& key, const std::string& problem, const std
 {
   const Value* value = find(key);
   const std::string given = value == nullptr ? "(not set)" : describe(*value);
-  throw drive::ConfigurationError(wire::shown(
+  throw drive::ConfigurationError(util::printable(
       placeOf(key) + ": key '" + key + "' = " + given + ": " + problem + "; allowed: " + allowed, LONGEST_MESSAGE));
 }
 }  // namespace bus

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bus/link/own_exceptions.h"
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 namespace inverter_bus
 {
@@ -819,7 +819,7 @@ void Inverter::noteProbed(const wire::Reply& reply)
 
 std::string Inverter::onlineText() const
 {
-  return "online; locked until it is sent 0, or nothing for " + wire::shownDuration(interlock.silenceNeeded()) +
+  return "online; locked until it is sent 0, or nothing for " + util::durationText(interlock.silenceNeeded()) +
          (drive.sequence("forward") == nullptr && drive.sequence("reverse") == nullptr
               ? "; it gets no velocity, see /diagnostics"
               : "");
@@ -835,7 +835,7 @@ std::string Inverter::offlineReason() const
 std::string Inverter::offlineText(TimePoint now) const
 {
   std::string text = "offline (" + errorIdText(exchange_error_) + " " + offlineReason() + "; last answer ";
-  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
+  text += ever_answered_ ? util::durationText(now - last_reply_) + " ago)" : "never)";
   return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
 }
 
@@ -913,7 +913,7 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
+    warn("a reply came " + util::durationText(latest_late_reply_) +
          " after its request; a response_timeout above that "
          "would have caught it");
   }
@@ -976,11 +976,11 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("drive", drive.profile().name);
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
+                      refresh.hasStamp() ? util::durationText(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", util::durationText(slowest_reply_));
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
+  values.emplace_back("own reply delay", util::durationText(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));

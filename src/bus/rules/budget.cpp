@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "bus/rules/scheduler.h"
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 namespace inverter_bus
 {
@@ -247,11 +247,11 @@ std::optional<Finding> Budget::returnBehindGateway() const
     return std::nullopt;
   }
   return Finding{ Level::Ok,
-                  "an inverter that was offline may need up to " + wire::shownDuration(longestReturn(block, 1)) +
+                  "an inverter that was offline may need up to " + util::durationText(longestReturn(block, 1)) +
                       " (times the number of those that are offline) to be back, if a silent station keeps the "
                       "gateway for gateway_timeout (" +
-                      wire::shownDuration(block) + "); " + wire::shownDuration(longestReturn({}, 1)) +
-                      " if it does so for " + wire::shownDuration(seconds(SHORT_BLOCK_S)) + " at most" };
+                      util::durationText(block) + "); " + util::durationText(longestReturn({}, 1)) +
+                      " if it does so for " + util::durationText(seconds(SHORT_BLOCK_S)) + " at most" };
 }
 
 std::vector<Finding> Budget::findings() const
@@ -271,7 +271,7 @@ std::vector<Finding> Budget::findings() const
     const InverterConfig& config = configuration_.bus.inverters[index];
     if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
     {
-      findings.push_back({ Level::Warn, config.name + ": command_timeout " + wire::shownNumber(config.command_timeout) +
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + util::numberText(config.command_timeout) +
                                             " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
     }
     const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "drive/profile/numbers.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -154,7 +154,7 @@ void readValues(const YamlCursor& cursor, Item& item)
     const std::int64_t highest = largestRaw(item);
     if (!raw || *raw < 0 || *raw > highest)
     {
-      meaning.complain("the raw value '" + wire::shown(key) + "': allowed: an integer from 0 to " +
+      meaning.complain("the raw value '" + util::printable(key) + "': allowed: an integer from 0 to " +
                        std::to_string(highest));
     }
     else if (value)

@@ -8,7 +8,7 @@
 #include <locale>
 #include <sstream>
 
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 namespace inverter_bus
 {
@@ -149,7 +149,7 @@ std::optional<double> parseNumber(const std::string& text)
 
 std::string formatNumber(double value)
 {
-  return wire::shownNumber(value, 12);
+  return util::numberText(value, 12);
 }
 
 std::string formatHex(std::uint32_t value)

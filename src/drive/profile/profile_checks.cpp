@@ -9,7 +9,7 @@
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/status_fields.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -67,7 +67,7 @@ void checkParameterName(const YamlValue& root, const std::string& key, const std
   if (!name.empty() && profile.parameters.count(name) == 0)
   {
     locate(root, key, problems)
-        .complain("value '" + wire::shown(name) + "': allowed: a name of the section parameters");
+        .complain("value '" + util::printable(name) + "': allowed: a name of the section parameters");
   }
 }
 
@@ -84,7 +84,7 @@ void checkUnit(const YamlValue& root, const std::string& key, const std::string&
   if (std::find(units.begin(), units.end(), unit) == units.end())
   {
     const YamlCursor place = locate(root, key, problems);
-    place.complain("value '" + wire::shown(name) + "': a parameter with the unit '" + unit +
+    place.complain("value '" + util::printable(name) + "': a parameter with the unit '" + unit +
                    "': allowed: " + join(units));
   }
 }

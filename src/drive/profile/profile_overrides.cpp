@@ -6,7 +6,7 @@
 
 #include "drive/profile/item_reader.h"
 #include "drive/profile/yaml_reader.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -230,7 +230,7 @@ void confirm(YamlValue& root, const std::vector<std::string>& names, const std::
     else
     {
       problems.add(place, "confirm",
-                   "value '" + wire::shown(name) + "': " +
+                   "value '" + util::printable(name) + "': " +
                        (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + join(known)));
     }
   }

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "drive/profile/numbers.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -39,7 +39,7 @@ void YamlCursor::reject(const std::string& allowed) const
   switch (value_->kind)
   {
     case YamlValue::Kind::Scalar:
-      complain("value '" + wire::shown(value_->text) + "'" + (value_->scalar.quoted ? " (a text, in quotes)" : "") +
+      complain("value '" + util::printable(value_->text) + "'" + (value_->scalar.quoted ? " (a text, in quotes)" : "") +
                ": allowed: " + allowed);
       break;
     case YamlValue::Kind::List:

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "config/scalar.h"
-#include "config/shown.h"
 #include "inverter_bus/simulation/bus_config.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -26,7 +26,7 @@ std::string describe(const Value* value)
     case Value::Type::Number:
       return config::numberInYaml(value->number);
     case Value::Type::Text:
-      return config::shown(value->text);
+      return util::printable(value->text);
     case Value::Type::List:
       return "a list";
     case Value::Type::Map:
@@ -50,7 +50,7 @@ std::string withHint(const Value* value, const std::string& allowed)
 
 void refuse(const std::string& place, const Value* value, const std::string& allowed)
 {
-  throw ConfigError(config::shown(place, 500) + ": " + describe(value) + " (allowed: " + allowed + ")");
+  throw ConfigError(util::printable(place, 500) + ": " + describe(value) + " (allowed: " + allowed + ")");
 }
 
 const Value* find(const Value* map, const std::string& key)

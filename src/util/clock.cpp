@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 #include <thread>
 
 namespace inverter_bus
 {
-namespace wire
+namespace util
 {
 TimePoint SteadyClock::now() const
 {
@@ -17,5 +17,5 @@ void SteadyClock::sleepUntil(TimePoint time)
 {
   std::this_thread::sleep_until(time);
 }
-}  // namespace wire
+}  // namespace util
 }  // namespace inverter_bus

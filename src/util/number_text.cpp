@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "wire/shown_number.h"
+#include "util/number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace inverter_bus
 {
-namespace wire
+namespace util
 {
 namespace
 {
@@ -32,7 +32,7 @@ std::string withoutTrailingZeros(std::string text)
 }
 }  // namespace
 
-std::string shownNumber(double value, int digits)
+std::string numberText(double value, int digits)
 {
   if (std::isnan(value))
   {
@@ -54,12 +54,12 @@ std::string shownNumber(double value, int digits)
   return withoutTrailingZeros(text.str());
 }
 
-std::string shownDuration(Duration duration)
+std::string durationText(Duration duration)
 {
   constexpr int DIGITS = 3;
   constexpr double LONG_S = 0.9995;  // 1000 ms is 1 s
   const double time = toSeconds(duration);
-  return std::fabs(time) < LONG_S ? shownNumber(time * 1e3, DIGITS) + " ms" : shownNumber(time, DIGITS) + " s";
+  return std::fabs(time) < LONG_S ? numberText(time * 1e3, DIGITS) + " ms" : numberText(time, DIGITS) + " s";
 }
-}  // namespace wire
+}  // namespace util
 }  // namespace inverter_bus

@@ -12,8 +12,8 @@
 
 #include "inverter_bus/wire/request.h"
 #include "ros/status_conversion.h"
-#include "ros/steady_event.h"
 #include "util/number_text.h"
+#include "util/steady_event.h"
 
 namespace inverter_bus
 {
@@ -34,7 +34,7 @@ constexpr double MARGIN = 0.5;
 struct AnswerSlot
 {
   bus::Answer answer;
-  SteadyEvent answered;
+  util::SteadyEvent answered;
 };
 
 bus::Answer timeoutAnswer(const std::string& message)

@@ -85,7 +85,7 @@ std::string inverterLine(const bus::InverterConfig& config)
 }
 }  // namespace
 
-bool waitForMaster(const SteadyEvent& end)
+bool waitForMaster(const util::SteadyEvent& end)
 {
   bool told = false;
   while (!ros::master::check())

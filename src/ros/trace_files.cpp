@@ -151,7 +151,7 @@ void TraceFiles::writeSoon(bus::TraceDump dump)
     last_automatic_ = now;
     waiting_ = std::move(dump);
   }
-  changed_.notify_one();
+  changed_.notifyOne();
 }
 
 std::string TraceFiles::writeAsked(const std::function<bus::TraceDump()>& record, TimePoint now, std::string& error)
@@ -210,7 +210,7 @@ void TraceFiles::stop()
     const std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
   }
-  changed_.notify_one();
+  changed_.notifyOne();
   if (thread_.joinable())
   {
     thread_.join();

@@ -2,7 +2,10 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/util/clock.h"
 
-#include <thread>
+#include <cerrno>
+#include <ctime>
+
+#include "util/timespec.h"
 
 namespace inverter_bus
 {
@@ -15,7 +18,11 @@ TimePoint SteadyClock::now() const
 
 void SteadyClock::sleepUntil(TimePoint time)
 {
-  std::this_thread::sleep_until(time);
+  const timespec end = monotonicTime(time);
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &end, nullptr) == EINTR)
+  {
+    // A signal woke it.
+  }
 }
 }  // namespace util
 }  // namespace inverter_bus

@@ -72,11 +72,16 @@ void count(bool steady)
   ++(steady ? steady_waits : wall_clock_waits);
 }
 
-/// The function that \p own hides. Versioned where there are several, for dlsym() may find one of an older kind of pthread_cond_t.
+/// The function that \p own hides.
 template <typename Function>
 Function* hidden(Function* /*own*/, const char* name)
 {
+#ifdef __SANITIZE_THREAD__
+  void* found = nullptr;  // the sanitizer's own, which has no version, and must not be passed by
+#else
+  // dlsym() of an older glibc finds the oldest version, which knows another pthread_cond_t.
   void* found = dlvsym(RTLD_NEXT, name, "GLIBC_2.3.2");
+#endif
   found = found != nullptr ? found : dlsym(RTLD_NEXT, name);
   return reinterpret_cast<Function*>(found);
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "util/number_text.h"
+#include "util/text.h"
 
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "bus/coordinator.h"
-#include "util/number_text.h"
+#include "util/text.h"
 
 // The way to the drives: what a gateway still works on, connections that are closed by their other end, links that have gone
 // mute, telnet servers.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include <cstdio>
-
 #include "bus/coordinator.h"
+#include "util/text.h"
 
 // What the coordinator tells: status, diagnostics, answers.
 
@@ -14,12 +13,6 @@ namespace
 {
 constexpr double FOREIGN_SHOWN_S = 60.0;
 
-std::string rounded(double value, const char* format)
-{
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 }  // namespace
 
 void Coordinator::log(Level level, const std::string& text, const std::string& subject)
@@ -121,20 +114,20 @@ Report Coordinator::report(TimePoint now) const
     }
   }
   report.values.emplace_back("port", configuration_.bus.port);
-  report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
-  report.values.emplace_back("computed cycle", rounded(toSeconds(budget_.cycle) * 1e3, "%.1f ms"));
-  report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
-  report.values.emplace_back("worst stop latency, computed", rounded(toSeconds(worstStop()) * 1e3, "%.1f ms"));
-  report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
+  report.values.emplace_back("cycle time", util::fixedText(report.bus.cycle_time * 1e3, 1) + " ms");
+  report.values.emplace_back("computed cycle", util::millisecondsText(budget_.cycle));
+  report.values.emplace_back("utilization", util::fixedText(report.bus.utilization * 100.0, 0) + " %");
+  report.values.emplace_back("worst stop latency, computed", util::millisecondsText(worstStop()));
+  report.values.emplace_back("worst stop latency, measured",
+                             util::fixedText(report.bus.stop_latency_max * 1e3, 1) + " ms");
   if (!configuration_.bus.gateway)
   {
     report.values.emplace_back("adapter latency", adapter_.text());
   }
-  report.values.emplace_back("longest pause in a reply", rounded(toSeconds(line_.patience()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("longest pause in a reply", util::millisecondsText(line_.patience()));
   if (gateway_.active())
   {
-    report.values.emplace_back("gateway kept by a silent station",
-                               rounded(toSeconds(gateway_.block()) * 1e3, "%.0f ms"));
+    report.values.emplace_back("gateway kept by a silent station", util::millisecondsText(gateway_.block(), 0));
     report.values.emplace_back("offline inverter back within", returnText());
   }
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");

@@ -12,7 +12,7 @@
 
 #include "inverter_bus/wire/request.h"
 #include "ros/status_conversion.h"
-#include "util/number_text.h"
+#include "util/text.h"
 #include "util/steady_event.h"
 
 namespace inverter_bus

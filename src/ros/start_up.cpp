@@ -9,7 +9,7 @@
 
 #include "ros/log.h"
 #include "ros/trace_files.h"
-#include "util/number_text.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {

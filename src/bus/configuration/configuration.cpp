@@ -15,6 +15,7 @@
 #include "bus/configuration/configuration_scan_list.h"
 #include "bus/configuration/configuration_section.h"
 #include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -160,7 +161,7 @@ void checkSetting(const Section& section, const std::string& key, const Setting&
     names.push_back(settingText(value));
   }
   section.fail(key, settingText(setting) + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
-               join(names));
+               util::joined(names));
 }
 
 void checkSerial(const Section& section, const wire::SerialSettings& serial, const InverterConfig& inverter,
@@ -181,7 +182,7 @@ void checkSerial(const Section& section, const wire::SerialSettings& serial, con
   if (!profile.characters.empty() && profile.characters.count(character) == 0)
   {
     section.fail("stop_bits", character + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
-                 join({ profile.characters.begin(), profile.characters.end() }));
+                 util::joined(profile.characters));
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "bus/configuration/configuration_yaml.h"
 #include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -30,7 +31,7 @@ constexpr double ROUNDING = 1e-9;
 std::string readName(const Section& entry)
 {
   static const std::regex GRAPH_NAME("[A-Za-z][A-Za-z0-9_]*");
-  const std::string allowed = "a letter, then letters, digits and _; not " + join(RESERVED_NAMES);
+  const std::string allowed = "a letter, then letters, digits and _; not " + util::joined(RESERVED_NAMES);
   entry.require("name", allowed);
   std::string name = entry.text("name", "");
   constexpr std::size_t LONGEST_NAME = 255;
@@ -77,8 +78,7 @@ std::vector<std::string> readConfirm(const Section& entry)
 /// that he believes read, is neither.
 void checkSkipped(const Section& entry, const std::string& field)
 {
-  const std::string allowed = "fields of the status that nothing depends on: " +
-                              join({ drive::skippableFields().begin(), drive::skippableFields().end() });
+  const std::string allowed = "fields of the status that nothing depends on: " + util::joined(drive::skippableFields());
   if (drive::protectedFields().count(field) != 0)
   {
     entry.fail("skip", "holds '" + field + "', which the driver can't do without", allowed);

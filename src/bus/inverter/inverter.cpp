@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bus/link/own_exceptions.h"
-#include "util/number_text.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -33,16 +33,6 @@ constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
 constexpr double MOST_PAID_FOR_DATA_S = 0.135;
-
-std::string listed(const std::vector<int>& codes)
-{
-  std::string text;
-  for (const int code : codes)
-  {
-    text += (text.empty() ? "" : ", ") + std::to_string(code);
-  }
-  return text;
-}
 
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
@@ -954,9 +944,9 @@ std::string Inverter::blockFinding() const
   {
     return "block read is selected but not in effect: direct reads are used; switch the drive off and on";
   }
-  return "block read and write are not used, since the drive has selected " + listed(slots->write) + " and " +
-         listed(slots->read) + " instead of " + listed(wantedWriteCodes()) + " and " + listed(config.block_read) +
-         "; direct reads are used; set the drive, or configure_block: true";
+  return "block read and write are not used, since the drive has selected " + util::joined(slots->write) + " and " +
+         util::joined(slots->read) + " instead of " + util::joined(wantedWriteCodes()) + " and " +
+         util::joined(config.block_read) + "; direct reads are used; set the drive, or configure_block: true";
 }
 
 std::vector<int> Inverter::wantedWriteCodes() const
@@ -987,7 +977,7 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   }
   if (drive.profile().block)
   {
-    values.emplace_back("block read", refresh.block() ? "in use: " + listed(config.block_read) : "not used");
+    values.emplace_back("block read", refresh.block() ? "in use: " + util::joined(config.block_read) : "not used");
   }
   for (const auto& value : refresh.chosenValues())
   {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "util/number_text.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {

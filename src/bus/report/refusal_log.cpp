@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/report/refusal_log.h"
 
-#include "util/number_text.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {

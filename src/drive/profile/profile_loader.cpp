@@ -12,6 +12,7 @@
 #include "drive/profile/yaml_value.h"
 #include "inverter_bus/drive/profile.h"
 #include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -36,7 +37,7 @@ std::string profilePath(const std::string& name_or_path, const std::string& dire
   }
   problems.add(place.empty() ? directory : place, "drive",
                "value '" + util::printable(name_or_path) + "': allowed: an absolute path, or one of: " +
-                   (known.empty() ? "(no profiles in " + directory + ")" : join(known)));
+                   (known.empty() ? "(no profiles in " + directory + ")" : util::joined(known)));
   return "";
 }
 

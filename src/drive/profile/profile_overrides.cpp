@@ -7,6 +7,7 @@
 #include "drive/profile/item_reader.h"
 #include "drive/profile/yaml_reader.h"
 #include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -229,9 +230,10 @@ void confirm(YamlValue& root, const std::vector<std::string>& names, const std::
     }
     else
     {
-      problems.add(place, "confirm",
-                   "value '" + util::printable(name) + "': " +
-                       (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + join(known)));
+      problems.add(
+          place, "confirm",
+          "value '" + util::printable(name) +
+              "': " + (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + util::joined(known)));
     }
   }
   removeNames(root, confirmed);

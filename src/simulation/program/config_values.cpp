@@ -8,6 +8,7 @@
 #include "config/scalar.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -102,12 +103,7 @@ int toInteger(const Value* value, const std::string& place, const std::set<int>&
                      allowed.count(static_cast<int>(value->integer)) != 0;
   if (!known)
   {
-    std::string list;
-    for (const int number : allowed)
-    {
-      list += (list.empty() ? "" : ", ") + std::to_string(number);
-    }
-    refuse(place, value, list);
+    refuse(place, value, util::joined(allowed));
   }
   return static_cast<int>(value->integer);
 }

@@ -19,19 +19,6 @@ namespace
 {
 constexpr Duration MASTER_PERIOD = std::chrono::milliseconds(200);
 
-char parityLetter(wire::Parity parity)
-{
-  switch (parity)
-  {
-    case wire::Parity::Even:
-      return 'E';
-    case wire::Parity::Odd:
-      return 'O';
-    default:
-      return 'N';
-  }
-}
-
 const char* rs485Text(wire::Rs485 mode)
 {
   switch (mode)
@@ -51,7 +38,7 @@ std::string busLine(const bus::BusConfig& config)
 {
   std::ostringstream line;
   line << "port " << config.port << ", " << config.protocol << ", " << config.serial.baud_rate << " baud "
-       << config.serial.data_bits << parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
+       << config.serial.data_bits << wire::parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
        << rs485Text(config.serial.rs485) << (config.exclusive ? ", exclusive" : ", shared") << ", interval "
        << util::numberText(config.interval) << " s, response_timeout " << util::numberText(config.response_timeout)
        << " s, retries " << config.retries << ", offline_after " << config.offline_after << ", idle_divisor "

@@ -174,11 +174,8 @@ void checkSerial(const Section& section, const wire::SerialSettings& serial, con
   checkSetting(section, "parity", PARITIES.at(serial.parity), profile.parities, inverter);
   checkSetting(section, "data_bits", serial.data_bits, profile.data_bits, inverter);
   checkSetting(section, "stop_bits", serial.stop_bits, profile.stop_bits, inverter);
-  static const std::map<wire::Parity, std::string> LETTERS{ { wire::Parity::None, "N" },
-                                                            { wire::Parity::Even, "E" },
-                                                            { wire::Parity::Odd, "O" } };
   const std::string character =
-      std::to_string(serial.data_bits) + LETTERS.at(serial.parity) + std::to_string(serial.stop_bits);
+      std::to_string(serial.data_bits) + wire::parityLetter(serial.parity) + std::to_string(serial.stop_bits);
   if (!profile.characters.empty() && profile.characters.count(character) == 0)
   {
     section.fail("stop_bits", character + " can't be used by " + inverter.name + " (" + inverter.drive + ")",

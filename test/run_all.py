@@ -165,10 +165,19 @@ def report(program, outcome):
             print('         | %s' % re.sub(r'\x1b\[[0-9;]*m|[^\x20-\x7e]', '', line))
 
 
+def unit_test_names():
+    """unit/wire/line_test.cpp and system/alive_test.cpp are the programs wire_line_test and system_alive_test."""
+    for path in glob.glob(os.path.join(ROOT, 'test', 'unit', '*', '*_test.cpp')) + \
+            glob.glob(os.path.join(ROOT, 'test', 'system', '*_test.cpp')):
+        folder, name = os.path.split(os.path.splitext(path)[0])
+        yield os.path.basename(folder) + '_' + name
+
+
 def unit_programs(build):
+    names = set(unit_test_names())
     for path in sorted(glob.glob(os.path.join(build, 'devel', 'lib', 'inverter_bus', '*_test'))):
         name = os.path.basename(path)
-        if not os.path.exists(os.path.join(ROOT, 'test', 'unit', name + '.cpp')):
+        if name not in names:
             continue  # left over in the build from a test that has moved
         results = os.path.join(build, 'results', name)
         yield Program('unit', name, [path, '--gtest_output=xml:%s/%s.xml' % (results, name)], results=results)
@@ -203,6 +212,7 @@ def lint_programs(build):
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield python_program('lint', 'test/contract_test.py', build)
+    yield python_program('lint', 'test/steady_waits_test.py', build)
     yield Program('lint', 'sizes', [sys.executable, os.path.join(ROOT, 'test', 'sizes.py')])
     yield python_program('lint', 'test/sizes_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#ifndef INVERTER_BUS_WIRE_CLOCK_H
-#define INVERTER_BUS_WIRE_CLOCK_H
+#ifndef INVERTER_BUS_UTIL_CLOCK_H
+#define INVERTER_BUS_UTIL_CLOCK_H
 
 #include <chrono>
 
@@ -24,7 +24,7 @@ inline double toSeconds(Duration duration)
   return std::chrono::duration<double>(duration).count();
 }
 
-namespace wire
+namespace util
 {
 /// Where the bus gets its time from: the steady clock in the node, a virtual one in tests and in the fuzzer.
 class Clock
@@ -44,7 +44,7 @@ public:
   TimePoint now() const override;
   void sleepUntil(TimePoint time) override;
 };
-}  // namespace wire
+}  // namespace util
 }  // namespace inverter_bus
 
-#endif  // INVERTER_BUS_WIRE_CLOCK_H
+#endif  // INVERTER_BUS_UTIL_CLOCK_H

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "config/utf8.h"
+#include "util/utf8.h"
 
 namespace inverter_bus
 {
-namespace config
+namespace util
 {
 namespace
 {
@@ -45,5 +45,5 @@ Character characterAt(const std::string& text, std::size_t place)
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   return code < LEAST[length] || surrogate || code > 0x10FFFF ? Character() : Character{ length, code };
 }
-}  // namespace config
+}  // namespace util
 }  // namespace inverter_bus

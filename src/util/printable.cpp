@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "config/shown.h"
+#include "util/printable.h"
 
 #include <cstdint>
 
-#include "config/utf8.h"
+#include "util/utf8.h"
 
 namespace inverter_bus
 {
-namespace config
+namespace util
 {
 namespace
 {
@@ -27,7 +27,7 @@ std::size_t harmlessAt(const std::string& text, std::size_t place)
 }
 }  // namespace
 
-std::string shown(const std::string& text, std::size_t longest)
+std::string printable(const std::string& text, std::size_t longest)
 {
   std::string line;
   std::size_t place = 0;
@@ -45,5 +45,5 @@ std::string shown(const std::string& text, std::size_t longest)
   }
   return line;
 }
-}  // namespace config
+}  // namespace util
 }  // namespace inverter_bus

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#ifndef INVERTER_BUS_SRC_CONFIG_UTF8_H
-#define INVERTER_BUS_SRC_CONFIG_UTF8_H
+#ifndef INVERTER_BUS_UTIL_UTF8_H
+#define INVERTER_BUS_UTIL_UTF8_H
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace inverter_bus
 {
-namespace config
+namespace util
 {
 /// One character of a text.
 struct Character
@@ -21,7 +21,7 @@ struct Character
 
 /// \p place must lie inside \p text.
 Character characterAt(const std::string& text, std::size_t place);
-}  // namespace config
+}  // namespace util
 }  // namespace inverter_bus
 
-#endif  // INVERTER_BUS_SRC_CONFIG_UTF8_H
+#endif  // INVERTER_BUS_UTIL_UTF8_H

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <locale>
 #include <sstream>
 
 namespace inverter_bus
 {
-namespace wire
+namespace util
 {
 namespace
 {
@@ -32,7 +33,7 @@ std::string withoutTrailingZeros(std::string text)
 }
 }  // namespace
 
-std::string shownNumber(double value, int digits)
+std::string numberText(double value, int digits)
 {
   if (std::isnan(value))
   {
@@ -54,12 +55,49 @@ std::string shownNumber(double value, int digits)
   return withoutTrailingZeros(text.str());
 }
 
-std::string shownDuration(Duration duration)
+std::string exactText(double value)
+{
+  constexpr int DIGITS = 12;
+  return numberText(value, DIGITS);
+}
+
+std::string fixedText(double value, int decimals)
+{
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(decimals);
+  text << std::fixed << value;
+  return text.str();
+}
+
+std::string withUnit(const std::string& number, const std::string& unit)
+{
+  return unit.empty() ? number : number + " " + unit;
+}
+
+std::string durationText(Duration duration)
 {
   constexpr int DIGITS = 3;
   constexpr double LONG_S = 0.9995;  // 1000 ms is 1 s
   const double time = toSeconds(duration);
-  return std::fabs(time) < LONG_S ? shownNumber(time * 1e3, DIGITS) + " ms" : shownNumber(time, DIGITS) + " s";
+  return std::fabs(time) < LONG_S ? numberText(time * 1e3, DIGITS) + " ms" : numberText(time, DIGITS) + " s";
 }
-}  // namespace wire
+
+std::string millisecondsText(Duration duration, int decimals)
+{
+  return fixedText(toSeconds(duration) * 1e3, decimals) + " ms";
+}
+
+std::string hexText(std::uint32_t value, int digits)
+{
+  char text[16];
+  std::snprintf(text, sizeof text, "%0*X", digits, static_cast<unsigned>(value));
+  return text;
+}
+
+std::string hexNumber(std::uint32_t value)
+{
+  return "0x" + hexText(value, 4);
+}
+}  // namespace util
 }  // namespace inverter_bus

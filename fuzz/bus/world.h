@@ -14,8 +14,8 @@
 
 #include "bus/bus_loop.h"
 #include "bus/coordinator.h"
-#include "bus_fuzz_checker.h"
-#include "bus_fuzz_digest.h"
+#include "fuzz/bus/checker.h"
+#include "fuzz/bus/digest.h"
 #include "support/virtual_world.h"
 
 namespace inverter_bus

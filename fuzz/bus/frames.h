@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "bus_fuzz_scene.h"
+#include "fuzz/bus/scene.h"
 #include "inverter_bus/simulation/bytes.h"
 
 namespace inverter_bus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "bus_fuzz_scene.h"
+#include "fuzz/bus/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "bus_fuzz_dice.h"
+#include "fuzz/bus/dice.h"
 
 namespace inverter_bus
 {

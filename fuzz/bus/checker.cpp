@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "bus_fuzz_checker.h"
+#include "fuzz/bus/checker.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bus_fuzz_dice.h"
-#include "bus_fuzz_world.h"
+#include "fuzz/bus/dice.h"
+#include "fuzz/bus/world.h"
 
 namespace inverter_bus
 {

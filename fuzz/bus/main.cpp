@@ -13,7 +13,7 @@
 #include <iostream>
 #include <map>
 
-#include "bus_fuzz_game.h"
+#include "fuzz/bus/game.h"
 
 namespace inverter_bus
 {

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "bus_fuzz_frames.h"
-#include "bus_fuzz_scene.h"
+#include "fuzz/bus/frames.h"
+#include "fuzz/bus/scene.h"
 #include "inverter_bus/bus/types.h"
 #include "inverter_bus/simulation/simulated_bus.h"
 

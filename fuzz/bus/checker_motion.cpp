@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "bus_fuzz_checker.h"
+#include "fuzz/bus/checker.h"
 
 // What may move: locks, commands, RUN frames, stops.
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "bus_fuzz_checker.h"
+#include "fuzz/bus/checker.h"
 
 // Contract, 8.1 and 8.15: nobody takes another one's turn, and alive means data.
 

@@ -34,11 +34,17 @@ constexpr unsigned F001 = 0x0000;
 constexpr unsigned D001 = 0x1000;
 constexpr unsigned HITACHI_STATUS_END = 0x1100;  // below it the monitors, above it parameters
 constexpr unsigned HITACHI_TRIPS = 0x0011;
+constexpr unsigned A001 = 0x1200;
+constexpr unsigned A002 = 0x1201;
+constexpr unsigned C076 = 0x144F;  // of the MX2
+constexpr unsigned C077 = 0x1450;
 // VF-S15: E6581913.
 constexpr unsigned FA00 = 0xFA00;
 constexpr unsigned FA01 = 0xFA01;
 constexpr unsigned FA87 = 0xFA87;  // whether set-points go to the EEPROM
 constexpr unsigned FD00 = 0xFD00;
+constexpr unsigned F803 = 0x0803;
+constexpr unsigned F804 = 0x0804;
 constexpr unsigned BLOCK_WRITE = 0x1870;
 constexpr unsigned BLOCK_READ = 0x1875;
 constexpr unsigned TOSHIBA_RUN = 0x0400;
@@ -309,6 +315,20 @@ std::optional<std::size_t> bearerOf(const Scene& scene, const Bytes& reply)
 RequestFacts readRequest(const Scene& scene, const Bytes& frame)
 {
   return scene.compoway ? readCompoway(scene, frame) : readModbus(scene, frame);
+}
+
+std::set<unsigned> settingsOf(const InverterFacts& facts)
+{
+  if (facts.brand == Brand::HITACHI)
+  {
+    return facts.drive == "omron_mx2" ? std::set<unsigned>{ A001, A002, C076, C077 } : std::set<unsigned>{ A001, A002 };
+  }
+  return facts.brand == Brand::TOSHIBA ? std::set<unsigned>{ F803, F804 } : std::set<unsigned>{};
+}
+
+bool tellsTimeout(const InverterFacts& facts, unsigned address)
+{
+  return settingsOf(facts).count(address) != 0 && (address == C077 || address == F803);
 }
 
 ReplyKind readReply(const Scene& scene, const Bytes& request, const Bytes& reply, unsigned& refusal)

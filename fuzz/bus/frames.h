@@ -4,7 +4,7 @@
 #define INVERTER_BUS_FUZZ_FRAMES_H
 
 #include <optional>
-#include <vector>
+#include <set>
 
 #include "fuzz/bus/scene.h"
 #include "inverter_bus/simulation/bytes.h"
@@ -53,6 +53,12 @@ std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station);
 std::optional<std::size_t> bearerOf(const Scene& scene, const simulation::Bytes& reply);
 
 RequestFacts readRequest(const Scene& scene, const simulation::Bytes& frame);
+
+/// What each brand is asked for once after it has come, in the lowest class: wire addresses.
+std::set<unsigned> settingsOf(const InverterFacts& facts);
+
+/// Such a setting is the communication time-out of the drive.
+bool tellsTimeout(const InverterFacts& facts, unsigned address);
 
 enum class ReplyKind
 {

@@ -3,11 +3,11 @@
 #ifndef INVERTER_BUS_FUZZ_GAME_H
 #define INVERTER_BUS_FUZZ_GAME_H
 
-#include <string>
-#include <vector>
-
-#include "fuzz/bus/dice.h"
-#include "fuzz/bus/world.h"
+#include "fuzz/bus/calm.h"
+#include "fuzz/bus/harm.h"
+#include "fuzz/bus/stage.h"
+#include "fuzz/bus/streams.h"
+#include "fuzz/bus/users.h"
 
 namespace inverter_bus
 {
@@ -27,67 +27,15 @@ public:
   void shutDown();
 
 private:
-  /// Repeats a velocity as a user's program does.
-  struct Stream
-  {
-    bool on = false;
-    unsigned number = 0;
-    double hertz = 0.0;
-    double drift = 0.0;
-    bool wavers = false;  ///< changes with every message and stays in its range
-    bool grouped = false;
-    unsigned sent = 0;
-    double period = 0.1;
-    bool dips = false;  ///< goes near zero now and then, as a controller does
-    TimePoint until;
-    std::string publisher;
-  };
-
-  void act();
+  void end();
   void scheduleAct();
-  void use();
-  void harm();
-  void move();
-  void beginStream(std::size_t index);
-  void tickStream(std::size_t index, unsigned number);
-  void sendVelocity(std::size_t index, double hertz, const std::string& publisher);
-  void sendStream(std::size_t index, const Stream& stream);
-  void sendNearZero(std::size_t index, const std::string& publisher);
-  double nearZero(std::size_t index);
-  void sendLatched(std::size_t index);
-  void sendGroup();
-  void sendNonsense(std::size_t index);
-  void storm();
-  void stopSomething();
-  void callService(std::size_t index);
-  void harmReplies(std::size_t index);
-  void harmDrive(std::size_t index);
-  void harmLine();
-  void killSeveral();
-  void failWhileItChanges();
-  std::size_t anyone();
-  double anySpeed(std::size_t index);
-  std::string anyPublisher();
-  const std::string& nameOf(std::size_t index) const;
-  bool allOf(const std::function<bool(std::size_t)>& condition) const;
-  void require(Duration limit, const std::string& rule, const std::function<bool()>& condition);
-  void mendEverything();
-  void resetAll();
-  void runAll();
-  bool runOne(std::size_t index);
-  void startAgain(std::size_t index, int& times);
-  void stopAll();
 
-  World& world_;
-  Dice dice_;
-  /// For what goes beyond limits and near zero: the rest of a story does not depend on it.
-  Dice limits_dice_;
-  std::vector<Stream> streams_;
-  bool acting_ = false;      ///< chance goes on
-  bool streaming_ = false;   ///< streams go on
-  bool refuses_ = false;     ///< drives refuse requests; otherwise replies of another kind come
-  double pace_ = 0.1;        ///< [s] between two acts, on average
-  double harm_share_ = 0.3;  ///< of the acts
+  Stage stage_;
+  double pace_;  ///< [s] between two acts, on average
+  Streams streams_;
+  Users users_;
+  Harm harm_;
+  double harm_share_;  ///< of the acts
 };
 }  // namespace fuzz
 }  // namespace inverter_bus

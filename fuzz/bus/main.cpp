@@ -14,6 +14,7 @@
 #include <map>
 
 #include "fuzz/bus/game.h"
+#include "fuzz/bus/violation.h"
 
 namespace inverter_bus
 {

@@ -303,6 +303,11 @@ private:
 };
 }  // namespace
 
+std::string Scene::title(std::size_t index) const
+{
+  return inverters[index].name + " (" + inverters[index].drive + ")";
+}
+
 Duration Scene::gap() const
 {
   return compoway ? seconds(0.002) : (baud_rate > 19200 ? seconds(0.00175) : seconds(3.5 * character));

@@ -65,6 +65,8 @@ struct Scene
   unsigned offline_after = 3;
   std::vector<InverterFacts> inverters;
 
+  /// "a (omron_mx2)", for messages.
+  std::string title(std::size_t index) const;
   /// The longest exchange that this bus can make, from its figures alone.
   Duration longestExchange() const;
   /// The longest time that a probe which nobody answers takes.

@@ -3,43 +3,21 @@
 #ifndef INVERTER_BUS_FUZZ_WORLD_H
 #define INVERTER_BUS_FUZZ_WORLD_H
 
-#include <deque>
+#include <cstdint>
 #include <functional>
-#include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "bus/bus_loop.h"
-#include "bus/coordinator.h"
+#include "fuzz/bus/calls.h"
 #include "fuzz/bus/checker.h"
 #include "fuzz/bus/digest.h"
+#include "fuzz/bus/driver.h"
+#include "fuzz/bus/story.h"
 #include "support/virtual_world.h"
 
 namespace inverter_bus
 {
 namespace fuzz
 {
-/// A port that tells the checker of every request before its first byte leaves.
-class WatchedPort : public VirtualPort
-{
-public:
-  WatchedPort(simulation::SimulatedBus& bus, AppointedClock& clock, Checker& checker)
-    : VirtualPort(bus, clock), clock_(clock), checker_(checker)
-  {
-  }
-
-  wire::OpenResult open(std::string& error) override;
-  bool send(const wire::Bytes& frame) override;
-  wire::ReceiveResult receive(wire::Bytes& buffer, TimePoint deadline) override;
-
-private:
-  AppointedClock& clock_;
-  Checker& checker_;
-};
-
 /// One bus in virtual time: the driver's core on one side, simulated drives on the other, the checker between them.
 class World
 {
@@ -57,14 +35,7 @@ public:
 
   // --- users ----------------------------------------------------------------------------------------------------------
   std::uint16_t command(const bus::VelocityCommand& command);
-  /// \p answered may be empty.
-  void stop(std::optional<std::size_t> index, std::uint8_t mode, std::function<void(const bus::Answer&)> answered);
-  void reset(std::size_t index, std::function<void(const bus::Answer&)> answered);
-  void readFaults(std::size_t index);
-  void readFixedParameter(std::size_t index);
-  void readUnknownParameter(std::size_t index);
-  void writeFreeParameter(std::size_t index, double value, bool persist);
-
+  Calls& calls();
   /// The program is ended: from now on motors are only stopped.
   void beginShutdown();
   bool shutdownDone();
@@ -73,11 +44,15 @@ public:
 
   // --- the world ------------------------------------------------------------------------------------------------------
   /// A command of the simulated bus; where it can't happen now, nothing does.
-  bool provoke(const std::string& command);
+  void provoke(const std::string& command);
   void cutPower(std::size_t index, double duration);
+  /// Noise, or frames of a second master.
+  void disturb();
 
-  Checker& checker();
   const Scene& scene() const;
+  const Checker& checker() const;
+  /// What the node has published of an inverter.
+  const Told& told(std::size_t index) const;
   /// The last frames, for a report.
   std::string lastFrames(std::size_t count) const;
   std::string state() const;
@@ -85,29 +60,16 @@ public:
   std::string digest() const;
 
 private:
-  static simulation::LineOptions options(std::uint64_t seed);
   void deliver();
-  void note(const std::string& text);
-  double ram(std::size_t index, const std::string& parameter) const;
 
   const Scene& scene_;
   AppointedClock clock_;
   simulation::SimulatedBus simulated_;
   Checker checker_;
   Digest digest_;
-  WatchedPort port_;
-  std::unique_ptr<wire::Protocol> protocol_;
-  wire::Line line_;
-  std::mutex mutex_;
-  bus::Coordinator coordinator_;
-  bus::BusLoop loop_;
-  bus::ServiceBounds bounds_;
-  std::deque<simulation::FrameRecord> frames_;
-  /// What users and the world did.
-  std::deque<std::pair<TimePoint, std::string>> events_;
-  /// Values that each free parameter was to be set to, and when.
-  std::vector<std::vector<std::pair<TimePoint, double>>> writes_;
-  std::vector<TimePoint> cuts_;  ///< of each drive's supply, the last one
+  Story story_;
+  Driver driver_;
+  Calls calls_;
 };
 }  // namespace fuzz
 }  // namespace inverter_bus

@@ -225,7 +225,7 @@ def python_program(kind, path, build, time_limit=120.0):
 
 
 def bus_fuzz_programs(build, seeds, processes=2):
-    """The whole bus in virtual time (fuzz/bus_fuzz*): always the same seeds."""
+    """The whole bus in virtual time (fuzz/bus): always the same seeds."""
     program = os.path.join(build, 'devel', 'lib', 'inverter_bus', 'bus_fuzz')
     each = seeds // processes
     for first in range(1, seeds + 1, each):

@@ -17,6 +17,33 @@ namespace
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 // A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
 constexpr double PORT_WORKS_AFTER_S = 3.0;
+
+/// What the end of an exchange shows of the inverter's link. \p missed: without an answer it counts against its liveness.
+void noteAnswer(Inverter& inverter, const wire::Reply& reply, bool missed)
+{
+  if (isAnswered(reply))
+  {
+    inverter.answered(reply);
+  }
+  else if (missed)
+  {
+    inverter.liveness.missed(reply.error_id);
+  }
+}
+
+/// What it shows of the drive's loop-back. \p resync: the loop-back went before a request that waits.
+void noteLoopback(Inverter& inverter, const wire::Reply& reply, bool loopback, bool resync)
+{
+  // A probe that nobody answers says nothing of the loop-back: the drive is away.
+  if (loopback && (resync || isAnswered(reply)))
+  {
+    inverter.loopback.note(reply.outcome);
+  }
+  else if (!loopback && isAnswered(reply))
+  {
+    inverter.loopback.otherAnswered();
+  }
+}
 }  // namespace
 
 /// Lost or damaged: is it to be repeated?
@@ -86,24 +113,11 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
     noteConnection(reply.finished_at, current, reply);
   }
   inverter.noteCost(current.pick.probe, reply.outcome, probePrice(current, reply));
-  const bool read_of_refresh = current.purpose == Purpose::Refresh && !current.resync;
-  if (current.request.expects_reply && !isAnswered(reply) && !behind_another_ && !read_of_refresh)
+  if (current.request.expects_reply)
   {
-    inverter.liveness.missed(reply.error_id);
+    noteAnswer(inverter, reply, !behind_another_ && (current.purpose != Purpose::Refresh || current.resync));
   }
-  if (current.request.expects_reply && isAnswered(reply))
-  {
-    inverter.answered(reply);
-  }
-  // A probe that nobody answers says nothing of the loop-back: the drive is away.
-  if (current.loopback && (current.resync || isAnswered(reply)))
-  {
-    inverter.loopback.note(reply.outcome);
-  }
-  else if (!current.loopback && isAnswered(reply))
-  {
-    inverter.loopback.otherAnswered();
-  }
+  noteLoopback(inverter, reply, current.loopback, current.resync);
   // A loop-back that is refused has put nothing into step: to a stop that is a failed attempt.
   const bool refused_stop = current.purpose == Purpose::StopFrame && reply.outcome == wire::Outcome::Exception;
   if (current.resync && isAnswered(reply) && !refused_stop)
@@ -127,16 +141,7 @@ void Coordinator::ended(const Current& current, const wire::Reply& reply)
       doneRefresh(current, reply);
       break;
     case Purpose::KeepAlive:
-      // One that is lost gives the turn away.
-      finishExchange(current, reply, isAnswered(reply));
-      if (reply.outcome == wire::Outcome::Ok)
-      {
-        inverter.liveness.dataRead();
-      }
-      if (!isAnswered(reply))
-      {
-        noteLost(reply.finished_at, inverter, reply.error_id);
-      }
+      doneKeepAlive(current, reply);
       break;
     case Purpose::Setting:
       doneSetting(current, reply);
@@ -229,6 +234,21 @@ void Coordinator::wentOffline(TimePoint now, Inverter& inverter)
   publish(now, inverter);
 }
 
+void Coordinator::doneKeepAlive(const Current& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *inverters_[current.inverter];
+  // One that is lost gives the turn away.
+  finishExchange(current, reply, isAnswered(reply));
+  if (reply.outcome == wire::Outcome::Ok)
+  {
+    inverter.liveness.dataRead();
+  }
+  if (!isAnswered(reply))
+  {
+    noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
 // --- stop ------------------------------------------------------------------------------------------------------------
 
 void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
@@ -246,14 +266,7 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
   {
     // It counts no try: the same frame goes first over the next connection. Closed again in its place, it is its station
     // that is silent.
-    if (write)
-    {
-      noteLostWrite(reply.finished_at, inverter, reply.error_id);
-    }
-    else
-    {
-      noteLost(reply.finished_at, inverter, reply.error_id);
-    }
+    noteLostStop(reply.finished_at, inverter, write, reply.error_id);
     return;
   }
   if (gateway_.active() && isAnswered(reply))
@@ -292,18 +305,23 @@ void Coordinator::doneStop(const Current& current, const wire::Reply& reply)
     }
     return;
   }
+  noteLostStop(reply.finished_at, inverter, write, reply.error_id);
+  if (write && !behind_another_ && inverter.lost_writes.lost() && !inverter.offline())
+  {
+    writesLost(reply.finished_at, inverter);
+  }
+}
+
+/// A frame of a stop that nobody answered: a write, or a read of what became of it.
+void Coordinator::noteLostStop(TimePoint now, Inverter& inverter, bool write, std::uint16_t error_id)
+{
   if (write)
   {
-    noteLostWrite(reply.finished_at, inverter, reply.error_id);
+    noteLostWrite(now, inverter, error_id);
   }
   else
   {
-    noteLost(reply.finished_at, inverter, reply.error_id);
-  }
-  const bool too_many = write && !behind_another_ && inverter.lost_writes.lost();
-  if (too_many && !inverter.offline())
-  {
-    writesLost(reply.finished_at, inverter);
+    noteLost(now, inverter, error_id);
   }
 }
 

@@ -20,6 +20,40 @@ std::string rounded(double value, const char* format)
   std::snprintf(text, sizeof text, format, value);
   return text;
 }
+
+Finding portFinding(const BusConfig& bus, const std::string& error)
+{
+  return { Level::Error, (error.empty() ? "port " + bus.port + " is not open yet" : error) +
+                             (bus.gateway ? "; check the address, and what else is connected to it"
+                                          : "; plug it in or check its name, rights and settings") };
+}
+
+Finding foreignFinding(const BusConfig& bus, std::uint64_t frames)
+{
+  return { Level::Warn,
+           std::string("frames that this node did not ask for are on the line: look for ") +
+               (bus.gateway ? "another client of the gateway, or a gateway that polls by itself" : "a second master") +
+               " (" + std::to_string(frames) + " so far)" };
+}
+
+InverterReport inverterReport(TimePoint now, const Inverter& inverter, Duration deadline_margin)
+{
+  InverterReport report;
+  report.name = inverter.config.name;
+  report.node = inverter.config.node;
+  report.status = inverter.status(now);
+  report.findings = inverter.findings(now);
+  report.values = inverter.values(now);
+  const auto timeout = inverter.settings.driveTimeout();
+  if (timeout && !inverter.drive.profile().communication_loss.timeout_parameter.empty())
+  {
+    if (const auto finding = Budget::judgeDriveTimeout(report.name, *timeout, deadline_margin))
+    {
+      report.findings.push_back(*finding);
+    }
+  }
+  return report;
+}
 }  // namespace
 
 void Coordinator::log(Level level, const std::string& text, const std::string& subject)
@@ -82,10 +116,7 @@ Report Coordinator::report(TimePoint now) const
   report.bus = busStatus(now);
   if (!report.bus.connected)
   {
-    report.findings.push_back(
-        { Level::Error, (port_error_.empty() ? "port " + configuration_.bus.port + " is not open yet" : port_error_) +
-                            (configuration_.bus.gateway ? "; check the address, and what else is connected to it"
-                                                        : "; plug it in or check its name, rights and settings") });
+    report.findings.push_back(portFinding(configuration_.bus, port_error_));
   }
   for (const auto& finding : { gatewayFinding(), quirkFinding() })
   {
@@ -96,12 +127,7 @@ Report Coordinator::report(TimePoint now) const
   }
   if (counters_.foreign_frames > 0 && now - foreign_at_ < seconds(FOREIGN_SHOWN_S))
   {
-    report.findings.push_back(
-        { Level::Warn, std::string("frames that this node did not ask for are on the line: look for ") +
-                           (configuration_.bus.gateway ? "another client of the gateway, or a gateway that "
-                                                         "polls by itself"
-                                                       : "a second master") +
-                           " (" + std::to_string(counters_.foreign_frames) + " so far)" });
+    report.findings.push_back(foreignFinding(configuration_.bus, counters_.foreign_frames));
   }
   if (const auto finding = adapter_.finding())
   {
@@ -140,21 +166,7 @@ Report Coordinator::report(TimePoint now) const
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));
   for (const auto& inverter : inverters_)
   {
-    InverterReport entry;
-    entry.name = inverter->config.name;
-    entry.node = inverter->config.node;
-    entry.status = inverter->status(now);
-    entry.findings = inverter->findings(now);
-    entry.values = inverter->values(now);
-    const auto timeout = inverter->settings.driveTimeout();
-    if (timeout && !inverter->drive.profile().communication_loss.timeout_parameter.empty())
-    {
-      if (const auto finding = Budget::judgeDriveTimeout(entry.name, *timeout, budget_.deadline_margin))
-      {
-        entry.findings.push_back(*finding);
-      }
-    }
-    report.inverters.push_back(entry);
+    report.inverters.push_back(inverterReport(now, *inverter, budget_.deadline_margin));
   }
   return report;
 }

@@ -26,6 +26,86 @@ int rank(std::uint16_t error_id)
                                                 ERROR_LOCKED };
   return static_cast<int>(std::find(ORDER.begin(), ORDER.end(), error_id) - ORDER.begin());
 }
+
+/// Why the inverter takes no velocity of \p publisher now; 0: it does. \p why only where it says more than the id.
+std::uint16_t obstacle(TimePoint now, const Inverter& inverter, const Publisher& publisher, std::string& why)
+{
+  // That it is the wrong drive says more than that it tells no status (the order of section 2).
+  const bool wrong = inverter.settings.identity() == Identity::Wrong;
+  if (inverter.offline() && !wrong)
+  {
+    return ERROR_OFFLINE;
+  }
+  if (!inverter.wrongDrive().empty())
+  {
+    why = inverter.wrongDrive();
+    return wrong ? ERROR_NOT_ARMED : ERROR_LOCKED;
+  }
+  if (!inverter.known())
+  {
+    // Silence counts from the first status, not from a stop that was confirmed before it.
+    return ERROR_LOCKED;
+  }
+  if (inverter.reset_active)
+  {
+    why = "a reset of the drive is under way";
+    return ERROR_LOCKED;
+  }
+  if (inverter.inSetup())
+  {
+    why = "a parameter is being written in the drive's setup area";
+    return ERROR_LOCKED;
+  }
+  if (inverter.stop.held())
+  {
+    return ERROR_CANCELLED;
+  }
+  switch (inverter.interlock.judge(now, publisher))
+  {
+    case Permission::Offline:
+      return ERROR_OFFLINE;
+    case Permission::StopPending:
+      return ERROR_CANCELLED;
+    case Permission::Locked:
+      why = inverter.interlock.locked(now) ? ""
+                                           : "locked for " + wire::shown(publisher.name) +
+                                                 ", which has neither sent 0 nor been silent since the last stop";
+      return ERROR_LOCKED;
+    default:
+      return 0;
+  }
+}
+
+/// Why the parameter is not written like this, whatever the value; empty: nothing speaks against it.
+std::string notOffered(const BusConfig& bus, const Inverter& inverter, const drive::Parameter& parameter, bool persist)
+{
+  const drive::Writes writes = inverter.drive.profile().writes;
+  if (bus.parameters_read_only)
+  {
+    return "parameter_access is read_only";
+  }
+  if (parameter.read_only)
+  {
+    return parameter.name + " can't be written";
+  }
+  if (parameter.communication && !persist)
+  {
+    return parameter.name + " is a setting of the bus itself: it is written with persist only";
+  }
+  if (writes == drive::Writes::Eeprom && !persist)
+  {
+    return "on this drive every write reaches the EEPROM: call with persist = true";
+  }
+  if (persist && writes == drive::Writes::Ram && inverter.drive.sequence("store") == nullptr)
+  {
+    return "this drive can't store by a command";
+  }
+  if (!(parameter.while_running.value_or(true) && !parameter.setup) && inverter.mayRun())
+  {
+    return parameter.name + " can't be written while the motor runs";
+  }
+  return "";
+}
 }  // namespace
 
 // --- velocity --------------------------------------------------------------------------------------------------------
@@ -47,62 +127,9 @@ std::uint16_t Coordinator::judgeOne(TimePoint now, std::size_t index, const Publ
     judged.text = judged.text.empty() ? errorText(judged.error_id) : judged.text;
     return judged.error_id;
   }
-  // That it is the wrong drive says more than that it tells no status (the order of section 2).
-  if (inverter.offline() && inverter.settings.identity() != Identity::Wrong)
-  {
-    judged.error_id = ERROR_OFFLINE;
-  }
-  else if (!inverter.wrongDrive().empty())
-  {
-    const bool wrong = inverter.settings.identity() == Identity::Wrong;
-    judged.error_id = wrong ? ERROR_NOT_ARMED : ERROR_LOCKED;
-    judged.text = inverter.wrongDrive();
-    return judged.error_id;
-  }
-  else if (!inverter.known())
-  {
-    // Silence counts from the first status, not from a stop that was confirmed before it.
-    judged.error_id = ERROR_LOCKED;
-  }
-  else if (inverter.reset_active)
-  {
-    judged.error_id = ERROR_LOCKED;
-    judged.text = "a reset of the drive is under way";
-    return judged.error_id;
-  }
-  else if (inverter.inSetup())
-  {
-    judged.error_id = ERROR_LOCKED;
-    judged.text = "a parameter is being written in the drive's setup area";
-    return judged.error_id;
-  }
-  else if (inverter.stop.held())
-  {
-    judged.error_id = ERROR_CANCELLED;
-  }
-  else
-  {
-    switch (inverter.interlock.judge(now, publisher))
-    {
-      case Permission::Offline:
-        judged.error_id = ERROR_OFFLINE;
-        break;
-      case Permission::StopPending:
-        judged.error_id = ERROR_CANCELLED;
-        break;
-      case Permission::Locked:
-        judged.error_id = ERROR_LOCKED;
-        break;
-      default:
-        break;
-    }
-  }
-  judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
-  if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
-  {
-    judged.text =
-        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
-  }
+  std::string why;
+  judged.error_id = obstacle(now, inverter, publisher, why);
+  judged.text = why.empty() && judged.error_id != 0 ? errorText(judged.error_id) : why;
   return judged.error_id;
 }
 
@@ -767,30 +794,7 @@ std::uint16_t Coordinator::judgeWrite(const Inverter& inverter, const std::strin
       return ERROR_OUT_OF_RANGE;
     }
   }
-  if (configuration_.bus.parameters_read_only)
-  {
-    why = "parameter_access is read_only";
-  }
-  else if (known->second.read_only)
-  {
-    why = name + " can't be written";
-  }
-  else if (known->second.communication && !persist)
-  {
-    why = name + " is a setting of the bus itself: it is written with persist only";
-  }
-  else if (profile.writes == drive::Writes::Eeprom && !persist)
-  {
-    why = "on this drive every write reaches the EEPROM: call with persist = true";
-  }
-  else if (persist && profile.writes == drive::Writes::Ram && inverter.drive.sequence("store") == nullptr)
-  {
-    why = "this drive can't store by a command";
-  }
-  else if (!(known->second.while_running.value_or(true) && !known->second.setup) && inverter.mayRun())
-  {
-    why = name + " can't be written while the motor runs";
-  }
+  why = notOffered(configuration_.bus, inverter, known->second, persist);
   if (!why.empty())
   {
     return ERROR_NOT_OFFERED;

@@ -263,6 +263,8 @@ private:
   void ended(const Current& current, const wire::Reply& reply);
   void finishExchange(const Current& current, const wire::Reply& reply, bool more);
   void doneStop(const Current& current, const wire::Reply& reply);
+  void noteLostStop(TimePoint now, Inverter& inverter, bool write, std::uint16_t error_id);
+  void doneKeepAlive(const Current& current, const wire::Reply& reply);
   void doneVelocity(const Current& current, const wire::Reply& reply);
   void failVelocity(const Current& current, const wire::Reply& reply, bool too_many_lost);
   void writesLost(TimePoint now, Inverter& inverter);

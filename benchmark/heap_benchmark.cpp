@@ -19,7 +19,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "heap_story.h"
+#include "support/heap_story.h"
 
 namespace
 {

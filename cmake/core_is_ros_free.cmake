@@ -1,39 +1,72 @@
-# Fails when a file of the core includes anything of ROS, or a room includes one that it may not enter.
-file(GLOB_RECURSE CORE_FILES
-  ${ROOT}/include/inverter_bus/config/*.h ${ROOT}/src/config/*
-  ${ROOT}/include/inverter_bus/wire/*.h ${ROOT}/src/wire/*
-  ${ROOT}/include/inverter_bus/drive/*.h ${ROOT}/src/drive/*
-  ${ROOT}/include/inverter_bus/bus/*.h ${ROOT}/src/bus/*
-  ${ROOT}/include/inverter_bus/simulation/*.h ${ROOT}/src/simulation/*
-  ${ROOT}/include/inverter_bus/bench/*.h ${ROOT}/src/bench/*)
-foreach(FILE ${CORE_FILES})
-  file(STRINGS ${FILE} INCLUDES REGEX "^[ \t]*#[ \t]*include")
-  foreach(INCLUDE ${INCLUDES})
-    if(INCLUDE MATCHES "[<\"](ros|std_msgs|std_srvs|diagnostic_[a-z]+|xmlrpcpp|XmlRpc[A-Za-z]*)[/.]"
-        OR INCLUDE MATCHES "inverter_bus/(ros/|[A-Z])")
-      message(FATAL_ERROR "${FILE}: the core must not include ROS: ${INCLUDE}")
+# Fails when a file of the core includes anything of ROS, or when a room includes one that it may not enter. A room is a
+# folder of src/; the headers of include/inverter_bus/<room> belong to it, too. docs/architecture.md has the picture.
+
+cmake_minimum_required(VERSION 3.16)
+
+# What each room may include beside itself.
+set(util_MAY)
+set(config_MAY util)
+set(wire_MAY util config)
+set(drive_MAY util config wire)
+set(bus_MAY util config wire drive)
+set(simulation_MAY util config)
+# It alone sees both sides: it has the scan list judged by the driver's rules, and plays what only a profile tells.
+set(bench_MAY util config wire drive bus simulation)
+set(ROOMS util config wire drive bus simulation bench)
+
+# Within a room: folders that may not include another one.
+set(wire_protocol_MUST_NOT port line)
+set(wire_port_MUST_NOT line)
+set(bus_configuration_MUST_NOT rules inverter link report activities)
+set(bus_rules_MUST_NOT inverter link report activities)
+set(bus_link_MUST_NOT rules inverter report activities)
+set(bus_report_MUST_NOT rules inverter link activities)
+set(bus_inverter_MUST_NOT report activities)
+set(simulation_station_MUST_NOT modbus compoway drives line program)
+set(simulation_modbus_MUST_NOT compoway drives line program)
+set(simulation_compoway_MUST_NOT modbus drives line program)
+set(simulation_drives_MUST_NOT line program)
+set(simulation_line_MUST_NOT drives program)
+
+function(check_include FILE ROOM FOLDER INCLUDE)
+  if(INCLUDE MATCHES "[<\"](ros|std_msgs|std_srvs|diagnostic_[a-z]+|xmlrpcpp|XmlRpc[A-Za-z]*)[/.]"
+      OR INCLUDE MATCHES "inverter_bus/[A-Z]")
+    message(FATAL_ERROR "${FILE}: the core must not include ROS: ${INCLUDE}")
+  endif()
+  if(INCLUDE MATCHES "modbus\\.h|<modbus/" AND NOT FILE MATCHES "/src/wire/port/modbus_transmitter\\.cpp$")
+    message(FATAL_ERROR "${FILE}: libmodbus is included in src/wire/port/modbus_transmitter.cpp only")
+  endif()
+  if(NOT INCLUDE MATCHES "\"(inverter_bus/)?([a-z]+)/(([a-z]+)/)?")
+    return()
+  endif()
+  set(OTHER ${CMAKE_MATCH_2})
+  set(OTHER_FOLDER "${CMAKE_MATCH_4}")
+  if(NOT OTHER STREQUAL ROOM AND NOT OTHER IN_LIST ${ROOM}_MAY)
+    message(FATAL_ERROR "${FILE}: ${ROOM}/ may include ${${ROOM}_MAY} and nothing else: ${INCLUDE}")
+  endif()
+  if(OTHER STREQUAL ROOM AND OTHER_FOLDER AND OTHER_FOLDER IN_LIST ${ROOM}_${FOLDER}_MUST_NOT)
+    message(FATAL_ERROR "${FILE}: ${ROOM}/${FOLDER} must not include ${ROOM}/${OTHER_FOLDER}: ${INCLUDE}")
+  endif()
+  if(ROOM STREQUAL "bus" AND FOLDER AND INCLUDE MATCHES "bus/(coordinator|bus_loop|bus)[a-z_]*\\.h")
+    message(FATAL_ERROR "${FILE}: only what stands in src/bus itself knows the coordinator: ${INCLUDE}")
+  endif()
+endfunction()
+
+set(CHECKED 0)
+foreach(ROOM ${ROOMS})
+  file(GLOB_RECURSE FILES ${ROOT}/include/inverter_bus/${ROOM}/*.h ${ROOT}/src/${ROOM}/*.h ${ROOT}/src/${ROOM}/*.cpp)
+  foreach(FILE ${FILES})
+    set(FOLDER "")
+    if(FILE MATCHES "/src/${ROOM}/([a-z]+)/")
+      set(FOLDER ${CMAKE_MATCH_1})
     endif()
-    # bench/ alone sees both: it has the scan list judged by the driver's rules, and plays what only a profile tells.
-    if(INCLUDE MATCHES "inverter_bus/bench/" AND NOT FILE MATCHES "/bench/")
-      message(FATAL_ERROR "${FILE}: bench/ is for the programs that simulate: ${INCLUDE}")
-    endif()
-    if(INCLUDE MATCHES "inverter_bus/simulation/" AND NOT FILE MATCHES "/(simulation|bench)/")
-      message(FATAL_ERROR "${FILE}: the driver must stay independent of the simulation: ${INCLUDE}")
-    endif()
-    if(FILE MATCHES "/simulation/" AND INCLUDE MATCHES "inverter_bus/(wire|drive|bus)/")
-      message(FATAL_ERROR "${FILE}: the simulation must stay independent of the driver: ${INCLUDE}")
-    endif()
-    if(FILE MATCHES "/config/" AND INCLUDE MATCHES "inverter_bus/(wire|drive|bus|simulation|bench)/")
-      message(FATAL_ERROR "${FILE}: config/ must not know any other room: ${INCLUDE}")
-    endif()
-    if(FILE MATCHES "/wire/" AND INCLUDE MATCHES "inverter_bus/(drive|bus)/")
-      message(FATAL_ERROR "${FILE}: wire/ must not know drive/ or bus/: ${INCLUDE}")
-    endif()
-    if(FILE MATCHES "/drive/" AND INCLUDE MATCHES "inverter_bus/bus/")
-      message(FATAL_ERROR "${FILE}: drive/ must not know bus/: ${INCLUDE}")
-    endif()
-    if(INCLUDE MATCHES "modbus\\.h|<modbus/" AND NOT FILE MATCHES "/src/wire/modbus_transmitter\\.cpp$")
-      message(FATAL_ERROR "${FILE}: libmodbus is included in src/wire/modbus_transmitter.cpp only")
-    endif()
+    file(STRINGS ${FILE} INCLUDES REGEX "^[ \t]*#[ \t]*include")
+    foreach(INCLUDE ${INCLUDES})
+      check_include(${FILE} ${ROOM} "${FOLDER}" "${INCLUDE}")
+    endforeach()
+    math(EXPR CHECKED "${CHECKED} + 1")
   endforeach()
 endforeach()
+if(CHECKED LESS 100)
+  message(FATAL_ERROR "Only ${CHECKED} files were looked at: have the folders moved?")
+endif()

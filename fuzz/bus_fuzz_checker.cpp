@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "inverter_bus/simulation/motor.h"
+#include "simulation/drives/motor.h"
 
 // The line and what is published. What may move stands in bus_fuzz_checker_motion.cpp.
 
@@ -288,6 +288,11 @@ void Checker::endExchange(TimePoint now)
       unanswered_.push_back(now);
       lane.lost_at = now;
     }
+    if (facts_.set_hertz)
+    {
+      // Nobody knows which set-point it has now.
+      lane.set_answered.reset();
+    }
     if (facts_.commands())
     {
       lane.settled = false;
@@ -391,7 +396,7 @@ void Checker::noteHeard(TimePoint end, std::size_t index)
 /// told from its late reply.
 void Checker::noteImitation(TimePoint now, const simulation::FrameRecord& frame, std::size_t index)
 {
-  const auto bears = scene_.compoway || frame.bytes.empty() ? std::nullopt : inverterAt(scene_, frame.bytes.front());
+  const auto bears = bearerOf(scene_, frame.bytes);
   if (bears && *bears != index)
   {
     lanes_[*bears].imitated_at = now;
@@ -547,8 +552,9 @@ void Checker::checkBackground(TimePoint now)
   {
     Lane& lane = lanes_[index];
     supervised += scene_.inverters[index].drive_timeout > 0.0 ? 1 : 0;
-    // After a lost exchange what is alike waits for a while (rule 3.9).
-    const bool undisturbed = lane.lost_at == TimePoint() || now - lane.lost_at > seconds(3.0);
+    // After a lost exchange what is alike waits for a while (rule 3.9), and nobody asks a drive that is deaf after its reset.
+    const bool undisturbed =
+        (lane.lost_at == TimePoint() || now - lane.lost_at > seconds(3.0)) && now > lane.deaf_until;
     const bool unread = undisturbed && unreadSettings(index);
     waiting = waiting || (lane.first_time && lane.online && unread);
   }

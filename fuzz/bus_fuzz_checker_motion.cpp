@@ -114,7 +114,8 @@ void Checker::stopAsked(TimePoint now, std::optional<std::size_t> index)
     }
     Lane& lane = lanes_[one];
     const bool flood = lane.stops_in_a_row >= FLOOD_OF_STOPS && now - lane.stop_sent < seconds(FLOOD_PAUSE_S);
-    const bool counts = !lane.stopping && !lane.due && !flood;
+    // At shutdown each one is stopped anyway, in an order of its own.
+    const bool counts = !lane.stopping && !lane.due && !flood && !shutting_down_;
     if (!online(one))
     {
       // It is tried once at once, then it is the probe.
@@ -142,7 +143,9 @@ void Checker::stopConfirmed(std::size_t index, TimePoint asked_at) const
   }
   const Brand brand = scene_.inverters[index].brand;
   const bool tells = brand == Brand::HITACHI || brand == Brand::TOSHIBA;
-  if (lane.stop_replied < asked_at && lane.run_read < asked_at)
+  // A 3G3JE tells neither its RUN nor which request it answers: there another drive's late reply under its station passes.
+  const bool imitated = scene_.compoway && lane.imitated_at >= asked_at;
+  if (lane.stop_replied < asked_at && lane.run_read < asked_at && !imitated)
   {
     fail(now, "a confirmed stop", nameOf(index) + " has acknowledged no stop since it was asked for");
   }

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "inverter_bus/simulation/compoway_frame.h"
-#include "inverter_bus/simulation/modbus_frame.h"
+#include "simulation/compoway/compoway_frame.h"
+#include "simulation/modbus/modbus_frame.h"
 
 namespace inverter_bus
 {
@@ -28,6 +28,7 @@ constexpr unsigned EXCEPTION_BIT = 0x80;
 
 // Wire addresses. MX2 and RX: I585, I578 (printed number less one).
 constexpr unsigned COIL_RUN = 0x0000;
+constexpr unsigned COIL_DIRECTION = 0x0001;
 constexpr unsigned COIL_RESET = 0x0003;
 constexpr unsigned F001 = 0x0000;
 constexpr unsigned D001 = 0x1000;
@@ -76,6 +77,7 @@ void readHitachi(const Bytes& frame, unsigned function, RequestFacts& facts)
   {
     facts.run = facts.address == COIL_RUN && value == 0xFF00;
     facts.stop = facts.address == COIL_RUN && value != 0xFF00;
+    facts.direction = facts.address == COIL_DIRECTION;
     facts.reset = facts.address == COIL_RESET && value == 0xFF00;
   }
   else if (function == WRITE_REGISTERS && facts.address == F001)
@@ -192,6 +194,11 @@ RequestFacts readModbus(const Scene& scene, const Bytes& frame)
   return facts;
 }
 
+unsigned compowayStation(const std::string& body)
+{
+  return static_cast<unsigned>(std::strtoul(body.substr(0, 2).c_str(), nullptr, 10));
+}
+
 /// CompoWay/F: I548, sections 2 and 3; the codes of service 30 05 are those of the scene.
 RequestFacts readCompoway(const Scene& scene, const Bytes& frame)
 {
@@ -204,9 +211,7 @@ RequestFacts readCompoway(const Scene& scene, const Bytes& frame)
   }
   facts.broadcast = body.substr(0, 2) == "XX";
   facts.expects_reply = !facts.broadcast;
-  facts.inverter = facts.broadcast
-                       ? std::optional<std::size_t>()
-                       : find(scene, static_cast<unsigned>(std::strtoul(body.substr(0, 2).c_str(), nullptr, 10)));
+  facts.inverter = facts.broadcast ? std::optional<std::size_t>() : find(scene, compowayStation(body));
   // Node, subaddress and SID take five characters.
   const std::string service = body.substr(5, 4);
   const std::string text = body.substr(9);
@@ -289,6 +294,16 @@ ReplyKind readCompowayReply(const Bytes& request, const Bytes& reply, unsigned& 
 std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station)
 {
   return find(scene, station);
+}
+
+std::optional<std::size_t> bearerOf(const Scene& scene, const Bytes& reply)
+{
+  if (!scene.compoway)
+  {
+    return reply.empty() ? std::nullopt : find(scene, reply.front());
+  }
+  const auto found = simulation::findCompowayFrame(reply);
+  return found ? find(scene, compowayStation(simulation::compowayBody(*found))) : std::nullopt;
 }
 
 RequestFacts readRequest(const Scene& scene, const Bytes& frame)

@@ -24,6 +24,8 @@ struct RequestFacts
   bool stop = false;   ///< takes RUN off
   bool reset = false;  ///< clears a trip
   bool reverse = false;
+  /// Writes the direction alone.
+  bool direction = false;
   /// Command words and a read in one frame (17H).
   bool with_read = false;
   bool loopback = false;
@@ -40,12 +42,15 @@ struct RequestFacts
   /// Part of a velocity or a stop: what moves a motor or takes RUN off.
   bool commands() const
   {
-    return run || stop || set_hertz.has_value();
+    return run || stop || direction || set_hertz.has_value();
   }
 };
 
 /// Whose station this is.
 std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station);
+
+/// The inverter whose station a reply bears.
+std::optional<std::size_t> bearerOf(const Scene& scene, const simulation::Bytes& reply);
 
 RequestFacts readRequest(const Scene& scene, const simulation::Bytes& frame);
 

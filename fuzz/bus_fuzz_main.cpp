@@ -37,6 +37,7 @@ struct Settings
   std::string scan_list;
   std::size_t frames = 30;
   bool verbose = false;
+  bool digest = false;
 };
 
 struct Bench
@@ -138,6 +139,10 @@ private:
       std::printf("seed %llu: %s, %zu inverters: good\n", number(seed), used.scene.name.c_str(),
                   used.scene.inverters.size());
     }
+    if (settings_.digest)
+    {
+      std::printf("digest %llu %s\n", number(seed), world.digest().c_str());
+    }
     simulated_ += world.now() - world.start();
     add(world.checker().statistics());
     return good;
@@ -190,7 +195,9 @@ int main(int argc, char** argv)
       "hours", options::value(&settings.hours), "instead of --seeds: until so much bus time has passed")(
       "scan-list", options::value(&settings.scan_list), ("only this kind of bus: " + names).c_str())(
       "frames", options::value(&settings.frames), "how many of the last frames to show, up to 5000")(
-      "verbose", options::bool_switch(&settings.verbose), "a line per seed");
+      "verbose", options::bool_switch(&settings.verbose), "a line per seed")(
+      "digest", options::bool_switch(&settings.digest),
+      "a line per seed with three hashes: frames; results, statuses and answers without texts; texts");
   options::variables_map given;
   try
   {

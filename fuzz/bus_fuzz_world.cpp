@@ -80,6 +80,7 @@ World::World(const Scene& scene, const bus::Configuration& configuration, std::u
     {
       frames_.pop_front();
     }
+    digest_.frame(frame);
     checker_.onFrame(clock_.now(), frame);
   });
   checker_.setClock([this] { return clock_.now(); });
@@ -170,6 +171,7 @@ void World::note(const std::string& text)
 void World::deliver()
 {
   const bus::Outputs outputs = coordinator_.takeOutputs();
+  digest_.outputs(clock_.now(), outputs);
   for (const bus::InverterStatus& status : outputs.statuses)
   {
     checker_.published(clock_.now(), status);
@@ -180,6 +182,7 @@ void World::deliver()
   }
   for (auto& answer : coordinator_.takeAnswers())
   {
+    digest_.answer(clock_.now(), answer.second);
     answer.first(answer.second);
   }
 }
@@ -189,6 +192,7 @@ void World::deliver()
 std::uint16_t World::command(const bus::VelocityCommand& command)
 {
   const std::uint16_t result = coordinator_.command(clock_.now(), command);
+  digest_.commanded(clock_.now(), result);
   std::ostringstream text;
   text << command.publisher.name << (command.publisher.latched ? " (latched)" : "") << " commands";
   for (const auto& target : command.targets)
@@ -321,6 +325,10 @@ void World::endShutdown(TimePoint begun)
   const TimePoint now = clock_.now();
   const std::vector<std::string> unconfirmed = coordinator_.endShutdown();
   deliver();
+  for (const std::string& text : unconfirmed)
+  {
+    digest_.unconfirmed(text);
+  }
   checker_.shutdownEnded(now, begun, unconfirmed);
 }
 
@@ -389,6 +397,13 @@ std::string World::lastFrames(std::size_t count) const
   }
   tellUntil(clock_.now());
   return text.str();
+}
+
+std::string World::digest() const
+{
+  Digest digest = digest_;
+  digest.report(coordinator_.report(clock_.now()));
+  return digest.text();
 }
 
 std::string World::state() const

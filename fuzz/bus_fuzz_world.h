@@ -12,10 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "bus/bus_loop.h"
+#include "bus/coordinator.h"
 #include "bus_fuzz_checker.h"
-#include "inverter_bus/bus/bus_loop.h"
-#include "inverter_bus/bus/coordinator.h"
-#include "virtual_world.h"
+#include "bus_fuzz_digest.h"
+#include "support/virtual_world.h"
 
 namespace inverter_bus
 {
@@ -80,6 +81,8 @@ public:
   /// The last frames, for a report.
   std::string lastFrames(std::size_t count) const;
   std::string state() const;
+  /// What the story looked like up to now, /diagnostics of this moment included.
+  std::string digest() const;
 
 private:
   static simulation::LineOptions options(std::uint64_t seed);
@@ -91,6 +94,7 @@ private:
   AppointedClock clock_;
   simulation::SimulatedBus simulated_;
   Checker checker_;
+  Digest digest_;
   WatchedPort port_;
   std::unique_ptr<wire::Protocol> protocol_;
   wire::Line line_;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Compares what README and docs say with the code: names, types, defaults, ranges, constants, bounds, and test names."""
+import collections
 import glob
 import os
 import re
@@ -10,6 +11,14 @@ import unittest
 import yaml
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+# More than this and nobody reads it to the end: what is left over goes into a page of docs/. Counted as `wc -w` does.
+README_WORDS = 2500
+
+# What a user reads, README first.
+PAGES = ['README.md'] + sorted(os.path.relpath(path, ROOT) for path in glob.glob(os.path.join(ROOT, 'docs', '*.md')))
+# All that links to each other.
+LINKED = PAGES + ['CONTRIBUTING.md', os.path.join('findings', 'README.md')]
 
 
 def read(*parts):
@@ -39,13 +48,35 @@ def members(source, struct):
 def commands(program, *words):
     """Command lines of README and docs that begin so, as a shell splits them."""
     found = []
-    for path in [os.path.join(ROOT, 'README.md')] + sorted(glob.glob(os.path.join(ROOT, 'docs', '*.md'))):
+    for path in PAGES:
         # A line of a block, or what stands between back-ticks.
         for line in re.findall(r'^(%s .*)$|`(%s [^`]*)`' % (program, program), read(path), re.MULTILINE):
             arguments = shlex.split(' '.join(line).strip(), comments=True)
             if arguments[1:1 + len(words)] == list(words):
                 found.append(arguments)
     return found
+
+
+def without_code(text):
+    """A page without its blocks of code: a # in them is a comment, and brackets are no links."""
+    return re.sub(r'^ *```.*?^ *```', '', text, flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(text):
+    """What a link may name in a page: its headings, as GitHub turns them into anchors, and anchors of its own."""
+    found, counts = set(re.findall(r'<a id="([\w-]+)"></a>', text)), collections.Counter()
+    for heading in re.findall(r'^#+ (.*)$', without_code(text), re.MULTILINE):
+        slug = re.sub(r'[^\w\- ]', '', heading.strip().lower()).replace(' ', '-')
+        found.add('%s-%d' % (slug, counts[slug]) if counts[slug] else slug)
+        counts[slug] += 1
+    return found
+
+
+def links(text):
+    """Targets of the links and pictures of a page that lead to files, as (file, anchor); file '': the page itself."""
+    prose = re.sub(r'`([^`\n]|\n(?!\n))*`', '', without_code(text))
+    targets = re.findall(r'\]\(([^)\s]+)\)', prose)
+    return [target.partition('#')[::2] for target in targets if not re.match(r'\w+:', target)]
 
 
 def fields(path):
@@ -66,7 +97,8 @@ class Readme(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.readme = read('README.md')
-        cls.configuration = code('src/bus/configuration*.cpp')
+        cls.scan_list = read('docs', 'scan_list_files.md')
+        cls.configuration = code('src/bus/configuration/*.cpp')
         header = read('include/inverter_bus/bus/configuration.h')
         cls.bus = members(header, 'BusConfig')
         cls.bus.update(members(read('include/inverter_bus/wire/serial_port.h'), 'SerialSettings'))
@@ -80,11 +112,11 @@ class Readme(unittest.TestCase):
         return re.findall(r'"(\w+)"', body)
 
     def testBusParametersAreThoseOfTheCode(self):
-        documented = [row[0] for row in table(self.readme, '### The bus')]
+        documented = [row[0] for row in table(self.scan_list, '### The bus')]
         self.assertEqual(documented, self.listed('busKeys'))
 
     def testEntryParametersAreThoseOfTheCode(self):
-        documented = [row[0] for row in table(self.readme, '### An entry of the scan list')]
+        documented = [row[0] for row in table(self.scan_list, '### An entry of the scan list')]
         self.assertEqual(documented, ['name', 'node'] + self.listed('sharedKeys'))
 
     def assertRows(self, rows, known):
@@ -100,11 +132,11 @@ class Readme(unittest.TestCase):
                              '[%s]' % cpp_default.strip('{} '), name)
 
     def testTypesAndDefaultsAreThoseOfTheCode(self):
-        self.assertRows(table(self.readme, '### The bus'), self.bus)
-        self.assertRows(table(self.readme, '### An entry of the scan list'), self.entry)
+        self.assertRows(table(self.scan_list, '### The bus'), self.bus)
+        self.assertRows(table(self.scan_list, '### An entry of the scan list'), self.entry)
 
     def testChoicesAndTheirDefaultsAreThoseOfTheCode(self):
-        rows = {row[0]: row for row in table(self.readme, '### The bus')}
+        rows = {row[0]: row for row in table(self.scan_list, '### The bus')}
         choices = re.findall(r'choice\("(\w+)", "(\w+)",\s*\{([^}]*)\}\)', self.configuration)
         self.assertEqual(sorted(name for name, _, _ in choices), ['parameter_access', 'protocol', 'rs485'])
         for name, default, values in choices:
@@ -113,7 +145,7 @@ class Readme(unittest.TestCase):
 
     def testRangesAreThoseOfTheCode(self):
         rows = {row[0]: row[3] for heading in ('### The bus', '### An entry of the scan list')
-                for row in table(self.readme, heading)}
+                for row in table(self.scan_list, heading)}
         integers = re.findall(r'integer\("(\w+)", bus\.\w+, (\d+), (\d+)\)', self.configuration)
         self.assertEqual(len(integers), 4)
         for name, low, high in integers:
@@ -129,8 +161,20 @@ class Readme(unittest.TestCase):
                 expected = '%g to %g %s' % (float(low), float(high), unit)
             self.assertEqual(rows[name], expected, name)
 
+    def testTheShortTablesOfTheReadmeSayWhatTheLongOnesSay(self):
+        section = self.readme.split('\n## Parameters\n', 1)[1].split('\n## ', 1)[0]
+        bus, entry = re.split(r'\n\n(?=\| key of an entry)', section)
+        for short, heading in ((bus, '### The bus'), (entry, '### An entry of the scan list')):
+            defaults = {row[0]: row[2] for row in table(self.scan_list, heading)}
+            rows = [[cell.strip() for cell in re.split(r'(?<!\\)\|', line)[1:-1]]
+                    for line in short.splitlines() if line.startswith('| `')]
+            self.assertGreater(len(rows), 5)
+            for names, default, _ in rows:
+                given = [value.strip('`') for value in default.split(', ')]
+                self.assertEqual([defaults[name] for name in re.findall(r'`(\w+)`', names)], given, names)
+
     def testReservedNamesAreThoseOfTheCode(self):
-        rows = {row[0]: row[3] for row in table(self.readme, '### An entry of the scan list')}
+        rows = {row[0]: row[3] for row in table(self.scan_list, '### An entry of the scan list')}
         self.assertEqual(re.findall(r'`(\w+)`', rows['name'] + '`')[1:], self.listed('RESERVED_NAMES'))
 
     def testTopicsAreThoseOfTheCode(self):
@@ -211,20 +255,24 @@ class Readme(unittest.TestCase):
 
 
 class Documents(unittest.TestCase):
+    def testTheReadmeIsShort(self):
+        self.assertLessEqual(len(read('README.md').split()), README_WORDS)
+
     def testLinksLeadSomewhere(self):
-        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')) + [
-                os.path.join(ROOT, 'findings', 'README.md')]:
-            text = read(path)
-            anchors = {re.sub(r'[^\w\- ]', '', heading.lower()).replace(' ', '-')
-                       for heading in re.findall(r'^#+ (.*)$', text, re.MULTILINE)}
-            for target in re.findall(r'\]\(([^)]+)\)', text):
-                if target.startswith('http'):
-                    continue
-                name, _, anchor = target.partition('#')
-                if name:
-                    self.assertTrue(os.path.exists(os.path.join(os.path.dirname(path), name)), '%s: %s' % (path, target))
-                else:
-                    self.assertIn(anchor, anchors, '%s: %s' % (path, target))
+        for page in LINKED:
+            for name, anchor in links(read(page)):
+                path = os.path.normpath(os.path.join(os.path.dirname(page), name)) if name else page
+                where = '%s: %s#%s' % (page, name, anchor)
+                self.assertFalse(path.startswith('..') or os.path.isabs(path), where)
+                self.assertTrue(os.path.exists(os.path.join(ROOT, path)), where)
+                if anchor:
+                    self.assertIn(anchor, anchors(read(path)), where)
+
+    def testEveryPageIsInTheIndex(self):
+        listed = [os.path.join('docs', name) for name, _ in links(read('docs', 'README.md'))]
+        for page in PAGES:
+            if os.path.basename(page) != 'README.md':
+                self.assertIn(page, listed)
 
     def testThePictureShowsWhatItsSourceSays(self):
         picture = read('docs', 'data_flow.svg')
@@ -244,7 +292,7 @@ class Documents(unittest.TestCase):
         self.assertEqual(positions, sorted(positions))
 
     def testSafetyRulesNameTestsThatExist(self):
-        tests = code('test/unit/*.cpp') + code('test/integration/*.py') + code('test/*.py') + code('test/peers/*.py')
+        tests = code('test/unit/*/*.cpp') + code('test/system/*.cpp') + code('test/integration/*.py') + code('test/*.py') + code('test/peers/*.py')
         for name in re.findall(r'`(\w+)\.(\w+)`', read('docs', 'safety_rules.md')):
             suite, case = name
             self.assertRegex(tests, r'(TEST(_F|_P)?\(%s, %s\)|class %s\b)' % (suite, case, suite), name)
@@ -287,7 +335,7 @@ class Documents(unittest.TestCase):
         self.assertIn('Forthcoming', lines)
 
     def testLaunchFilesAndScanListsThatAreNamedExist(self):
-        for path in [os.path.join(ROOT, 'README.md')] + glob.glob(os.path.join(ROOT, 'docs', '*.md')):
+        for path in LINKED:
             for name in re.findall(r'(?<![\w/])(\w+\.launch)\b', read(path)):
                 self.assertTrue(os.path.exists(os.path.join(ROOT, 'launch', name)), '%s: %s' % (path, name))
             for name in re.findall(r'\bconfig/([\w/]+\.yaml)', read(path)):

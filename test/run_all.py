@@ -202,6 +202,7 @@ def lint_programs(build, whole=False):
                    'scripts/common.sh', '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
+    yield python_program('lint', 'test/contract_test.py', build)
     # As many processes as cores; only what differs from the main branch, or all.
     yield Program('lint', 'clang_tidy', [sys.executable, os.path.join(ROOT, 'test', 'tidy.py'), '--build', build] +
                   (['--whole'] if whole else []), time_limit=3600.0)

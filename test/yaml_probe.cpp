@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "inverter_bus/config/yaml.h"
+#include "config/yaml.h"
 
 namespace
 {

@@ -42,9 +42,10 @@ if(LIBFUZZER)
   target_compile_options(fuzz_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-file(GLOB CORE_SOURCES CONFIGURE_DEPENDS ${ROOT}/src/config/*.cpp ${ROOT}/src/wire/*.cpp ${ROOT}/src/drive/*.cpp ${ROOT}/src/bus/*.cpp)
+file(GLOB_RECURSE CORE_SOURCES CONFIGURE_DEPENDS ${ROOT}/src/config/*.cpp ${ROOT}/src/wire/*.cpp ${ROOT}/src/drive/*.cpp
+  ${ROOT}/src/bus/*.cpp)
 list(FILTER CORE_SOURCES EXCLUDE REGEX "_main\\.cpp$")
 add_library(fuzz_core STATIC ${CORE_SOURCES})
-target_include_directories(fuzz_core PUBLIC ${ROOT}/include)
+target_include_directories(fuzz_core PUBLIC ${ROOT}/include ${ROOT}/src)
 target_compile_definitions(fuzz_core PRIVATE INVERTER_BUS_SOURCE_SHARE="${ROOT}" INVERTER_BUS_INSTALL_SHARE="${ROOT}")
 target_link_libraries(fuzz_core PUBLIC PkgConfig::MODBUS PkgConfig::YAML_CPP Boost::boost Threads::Threads fuzz_options)

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "checks.h"
-#include "fake_port.h"
 #include "inverter_bus/wire/line.h"
+#include "support/fake_port.h"
 
 namespace inverter_bus
 {

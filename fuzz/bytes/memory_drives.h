@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "fake_port.h"
+#include "support/fake_port.h"
 
 namespace inverter_bus
 {

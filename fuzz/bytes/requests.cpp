@@ -21,10 +21,10 @@
 #include <utility>
 #include <vector>
 
+#include "bus/bus_loop.h"
+#include "bus/coordinator.h"
+#include "bus/rules/velocity_group.h"
 #include "checks.h"
-#include "inverter_bus/bus/bus_loop.h"
-#include "inverter_bus/bus/coordinator.h"
-#include "inverter_bus/bus/velocity_group.h"
 #include "memory_drives.h"
 #include "text_file.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/bench/profile_drive.h"
+#include "bench/profile_drive.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "inverter_bus/simulation/motor_watch.h"
-#include "profile_memory.h"
+#include "bench/profile_memory.h"
+#include "simulation/drives/motor_watch.h"
 
 namespace inverter_bus
 {

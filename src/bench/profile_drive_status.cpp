@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "inverter_bus/bench/profile_drive.h"
-#include "inverter_bus/simulation/motor_watch.h"
-#include "profile_memory.h"
+#include "bench/profile_drive.h"
+#include "bench/profile_memory.h"
+#include "simulation/drives/motor_watch.h"
 
 namespace inverter_bus
 {

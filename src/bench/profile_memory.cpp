@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "profile_memory.h"
+#include "bench/profile_memory.h"
 
 namespace inverter_bus
 {

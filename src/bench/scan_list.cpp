@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/bench/scan_list.h"
+#include "bench/scan_list.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 
-#include "inverter_bus/bench/profile_drive.h"
+#include "bench/profile_drive.h"
+#include "config/shown.h"
 #include "inverter_bus/bus/configuration.h"
-#include "inverter_bus/config/shown.h"
 
 namespace inverter_bus
 {

@@ -13,7 +13,7 @@
 
 #include <boost/program_options.hpp>
 
-#include "inverter_bus/bench/scan_list.h"
+#include "bench/scan_list.h"
 #include "inverter_bus/bus/configuration.h"
 #include "inverter_bus/drive/profile.h"
 #include "inverter_bus/simulation/bus_config.h"

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "inverter_bus/bus/bus_loop.h"
-#include "inverter_bus/bus/coordinator.h"
-#include "inverter_bus/bus/flight_recorder.h"
+#include "bus/bus_loop.h"
+#include "bus/coordinator.h"
+#include "bus/report/flight_recorder.h"
 
 namespace inverter_bus
 {

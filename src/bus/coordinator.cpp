@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/bus/coordinator.h"
+#include "bus/coordinator.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "inverter_bus/wire/shown_number.h"
+#include "wire/shown_number.h"
 
 // The loop's side of the coordinator: which exchange is next. What follows from its end stands in
 // coordinator_outcomes.cpp, what users ask for in coordinator_requests.cpp, what it tells in coordinator_report.cpp.
@@ -16,7 +16,6 @@ namespace bus
 {
 namespace
 {
-constexpr double PROBE_SHARE = 0.05;
 // Contract, rule 3.7: an inverter is found again within 3 s; with a little margin.
 constexpr double PROBE_ROUND_S = 2.7;
 constexpr double SHORTEST_PROBE_TIMEOUT_S = 0.015;
@@ -68,7 +67,6 @@ Coordinator::Coordinator(const Configuration& configuration, const wire::Line& l
   settings.inverters = inverters_.size();
   settings.interval = seconds(configuration.bus.interval);
   settings.idle_divisor = static_cast<unsigned>(configuration.bus.idle_divisor);
-  settings.probe_share = PROBE_SHARE;
   scheduler_ = std::make_unique<Scheduler>(settings);
   last_published_.resize(inverters_.size());
   attempts_at_open_.resize(inverters_.size(), 0);
@@ -82,6 +80,7 @@ Coordinator::~Coordinator() = default;
 
 bool Coordinator::tick(TimePoint now)
 {
+  noteRunning(now);
   watchDeadMen(now);
   const bool lost_one = watchStatuses(now);
   for (const std::string& line : refusals_.takeLines(now))
@@ -92,6 +91,35 @@ bool Coordinator::tick(TimePoint now)
   finishStopCalls(now);
   publishSlowly(now);
   return lost_one;
+}
+
+/// Looks for a jump of time. Only who watches for answers of drives forgives it; dead men and locks go by the real time.
+void Coordinator::noteRunning(TimePoint now)
+{
+  const Duration frozen = freeze_.back(now);
+  if (frozen == Duration::zero() || !connected_)
+  {
+    return;
+  }
+  log(Level::Warn, "this node did not run for " + wire::shownDuration(frozen) +
+                       ": it was stopped, or its machine is overloaded; nothing was sent meanwhile, no stop either");
+  for (const auto& inverter : inverters_)
+  {
+    inverter->liveness.notWatching(now, frozen);
+  }
+  link_.notWatching(frozen);
+}
+
+/// With what the drives themselves have told of their wait.
+Duration Coordinator::longestExchange() const
+{
+  return budget_.longest_exchange + longestReplyDelay();
+}
+
+/// Since when an exchange has taken time from others: not while this node itself did not run.
+TimePoint Coordinator::countedFrom(const wire::Reply& reply) const
+{
+  return std::max(reply.sent_at, reply.finished_at - longestExchange());
 }
 
 void Coordinator::watchDeadMen(TimePoint now)
@@ -243,13 +271,14 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
   }
   for (int attempt = 0; attempt < MOST_EMPTY_PICKS; ++attempt)
   {
-    std::optional<Current> current = composeBroadcast();
+    std::optional<Current> current = composeBroadcast(now);
     if (!current)
     {
       const Pick chosen = pick(now);
       if (chosen.what == Pick::What::Nothing)
       {
         wake = std::max(earliestDeadMan(chosen.wake), now);
+        freeze_.backBy(wake);
         return std::nullopt;
       }
       current = compose(now, chosen);
@@ -257,6 +286,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
     if (current && !mustWait(now, *current) && makeSafe(now, *current))
     {
       current_ = current;
+      freeze_.backBy(now + longestExchange());
       Exchange exchange;
       exchange.request = current->request;
       if (current->request.broadcast)
@@ -267,10 +297,11 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
     }
   }
   wake = now + seconds(BUS_STATUS_SHORTEST_S);
+  freeze_.backBy(wake);
   return std::nullopt;
 }
 
-std::optional<Coordinator::Current> Coordinator::composeBroadcast()
+std::optional<Coordinator::Current> Coordinator::composeBroadcast(TimePoint now)
 {
   // Who stops all again and again must not keep the single stops from being sent and confirmed.
   const bool again = broadcast_last_;
@@ -279,6 +310,14 @@ std::optional<Coordinator::Current> Coordinator::composeBroadcast()
   {
     return std::nullopt;
   }
+  const bool kept = !gateway_.free(now);
+  if (kept && broadcast_waits_)
+  {
+    // One is in the gateway already (contract, 8.8), and each inverter's own stop goes all the same.
+    broadcast_due_ = false;
+    return std::nullopt;
+  }
+  broadcast_waits_ = kept;
   broadcast_due_ = false;
   broadcast_last_ = true;
   const Inverter& any = *inverters_.front();
@@ -679,6 +718,7 @@ void Coordinator::sent(TimePoint now)
   }
   if (current_->purpose == Purpose::StopFrame && !current_->resync)
   {
+    tellOfCostlyStop(inverter);
     const auto latency = inverter.stop.sent(now);
     // Behind a gateway the frame's way ends somewhere else (contract, 8.16). An inverter that can't be reached, or a port
     // that was gone, is no measure of the scheduler's latency.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "inverter_bus/bus/coordinator.h"
-#include "inverter_bus/wire/shown_number.h"
+#include "bus/coordinator.h"
+#include "wire/shown_number.h"
 
 // The way to the drives: what a gateway still works on, connections that are closed by their other end, links that have gone
 // mute, telnet servers.
@@ -35,8 +35,12 @@ GatewayRisk Coordinator::riskOf(const Current& current) const
     case Purpose::Broadcast:
       return GatewayRisk::Stop;
     case Purpose::Velocity:
-      // What was meant to stop is no danger, whenever it is carried out.
-      return current.resync || !current.moves ? GatewayRisk::None : GatewayRisk::Motion;
+      if (current.resync)
+      {
+        return GatewayRisk::None;
+      }
+      // A 0 is a stop, and its frame the one that may be in the gateway (contract, 8 and 8.8).
+      return current.moves ? GatewayRisk::Motion : GatewayRisk::Stop;
     case Purpose::Refresh:
     case Purpose::KeepAlive:
     case Purpose::Setting:
@@ -60,7 +64,7 @@ void Coordinator::noteGateway(const Current& current, const wire::Reply& reply)
   behind_another_ = !answered && gateway_.behindAnother(reply.ticket);
   if (answered)
   {
-    gateway_.answered(reply.finished_at, reply.ticket);
+    gateway_.answered(reply.finished_at, reply.ticket, reply.gateway_code != 0);
   }
   else
   {
@@ -112,17 +116,46 @@ Gate Coordinator::gate(TimePoint now)
   tellOfTheGateway();
   gate.stops_only = !gateway_.free(now);
   gate.until = gateway_.freeAt(now);
-  gate.bare_probes = std::none_of(inverters_.begin(), inverters_.end(), [this](const auto& inverter) {
-    const auto own = inverter->settings.driveTimeout();
-    return own && !inverter->offline() && inverter->mayRun() && *own < gateway_.block();
-  });
+  broadcast_waits_ = broadcast_waits_ && gate.stops_only;
+  gate.bare_probes = endangered() == nullptr;
   return gate;
+}
+
+/// The running inverter with the shortest time-out of its own, if a silent station keeps the gateway for longer than that.
+const Inverter* Coordinator::endangered() const
+{
+  const Inverter* first = nullptr;
+  Duration shortest = gateway_.block();
+  for (const auto& inverter : inverters_)
+  {
+    const auto own = inverter->settings.driveTimeout();
+    if (own && *own < shortest && !inverter->offline() && inverter->mayRun())
+    {
+      first = inverter.get();
+      shortest = *own;
+    }
+  }
+  return first;
+}
+
+/// Contract, 8.8: a stop of an inverter that may run goes in spite of what that does to its neighbours, with one WARN.
+void Coordinator::tellOfCostlyStop(Inverter& inverter)
+{
+  const Inverter* const neighbour = inverter.silent() && !shutting_down_ ? endangered() : nullptr;
+  if (neighbour != nullptr && inverter.stop.takeCostly())
+  {
+    const std::string& name = neighbour->config.name;
+    log(Level::Warn, inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
+                         wire::shownDuration(gateway_.block()) + ", longer than the time-out of " + name +
+                         " itself, which runs (" + wire::shownDuration(*neighbour->settings.driveTimeout()) +
+                         "): " + name + " may trip or stop by that; shorten the gateway's time-out");
+  }
 }
 
 /// The time that a probe takes from everybody else, with its silences; a refusal takes it too.
 Duration Coordinator::probePrice(const Current& current, const wire::Reply& reply) const
 {
-  const Duration own = reply.finished_at - reply.sent_at;
+  const Duration own = reply.finished_at - countedFrom(reply);
   const bool by_gateway = gateway_.active() && reply.gateway_code != 0;
   return std::max(by_gateway ? std::max(own, gateway_.block()) : own, line_.cost(current.request, Duration{ 0 }));
 }
@@ -172,8 +205,25 @@ Duration Coordinator::worstStop() const
   }
   const auto silent = std::count_if(inverters_.begin(), inverters_.end(),
                                     [](const auto& inverter) { return inverter->offline() || !inverter->known(); });
-  const Duration block = gateway_.block() > Duration::zero() ? gateway_.block() : gateway_.wait();
-  return wire + static_cast<int>(silent) * block;
+  return wire + static_cast<int>(silent) * gatewayBlock();
+}
+
+/// For how long a silent station keeps the gateway: as measured, or as configured until it is.
+Duration Coordinator::gatewayBlock() const
+{
+  return gateway_.block() > Duration::zero() ? gateway_.block() : gateway_.wait();
+}
+
+/// When an offline inverter that answers again is noticed at the latest.
+std::string Coordinator::returnText() const
+{
+  if (const Inverter* const neighbour = endangered())
+  {
+    return "not while " + neighbour->config.name + " runs, whose own time-out is shorter than the gateway is kept";
+  }
+  const auto offline =
+      std::count_if(inverters_.begin(), inverters_.end(), [](const auto& inverter) { return inverter->offline(); });
+  return wire::shownDuration(Budget::longestReturn(gatewayBlock(), static_cast<std::size_t>(offline)));
 }
 
 std::optional<Finding> Coordinator::gatewayFinding() const
@@ -378,8 +428,9 @@ void Coordinator::noteLink(const wire::Reply& reply)
   link_.answered();
 }
 
-bool Coordinator::renewalDue(TimePoint now) const
+bool Coordinator::renewalDue(TimePoint now)
 {
+  noteRunning(now);
   const bool serial = !configuration_.bus.gateway;
   const bool stop_under_way =
       serial && std::any_of(inverters_.begin(), inverters_.end(), [](const auto& inverter) {

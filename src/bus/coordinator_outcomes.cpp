@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include <algorithm>
 
-#include "inverter_bus/bus/coordinator.h"
+#include "bus/coordinator.h"
 
 // What follows from the end of an exchange.
 
@@ -65,6 +65,7 @@ bool Coordinator::repeat(int& tries, const wire::Reply& reply) const
 
 void Coordinator::done(const wire::Reply& reply)
 {
+  noteRunning(reply.finished_at);
   if (!current_)
   {
     return;
@@ -165,7 +166,7 @@ void Coordinator::finishExchange(const Current& current, const wire::Reply& repl
   {
     return;
   }
-  scheduler_->done(current.pick, reply.sent_at, reply.finished_at, more, isAnswered(reply));
+  scheduler_->done(current.pick, countedFrom(reply), reply.finished_at, more, isAnswered(reply));
   if (current.pick.probe && reply.outcome != wire::Outcome::Ok)
   {
     scheduler_->chargeProbe(reply.finished_at, probePrice(current, reply));

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 
-#include "inverter_bus/bus/coordinator.h"
+#include "bus/coordinator.h"
 
 // What the coordinator tells: status, diagnostics, answers.
 
@@ -139,13 +141,8 @@ Report Coordinator::report(TimePoint now) const
                                 "interval is longer than a drive's own communication time-out allows and is "
                                 "cut short" });
   }
-  for (const Finding& finding : budget_.findings)
-  {
-    if (finding.level != Level::Ok)
-    {
-      report.findings.push_back(finding);
-    }
-  }
+  std::copy_if(budget_.findings.begin(), budget_.findings.end(), std::back_inserter(report.findings),
+               [](const Finding& finding) { return finding.level != Level::Ok; });
   report.values.emplace_back("port", configuration_.bus.port);
   report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
   report.values.emplace_back("computed cycle", rounded(toSeconds(budget_.cycle) * 1e3, "%.1f ms"));
@@ -161,6 +158,7 @@ Report Coordinator::report(TimePoint now) const
   {
     report.values.emplace_back("gateway kept by a silent station",
                                rounded(toSeconds(gateway_.block()) * 1e3, "%.0f ms"));
+    report.values.emplace_back("offline inverter back within", returnText());
   }
   report.values.emplace_back("local echo", echo_found_ ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(counters_.foreign_frames));

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "inverter_bus/bus/coordinator.h"
-#include "inverter_bus/wire/shown.h"
+#include "bus/coordinator.h"
+#include "wire/shown.h"
 
 // What users ask of the bus: velocities, stops and services.
 
@@ -27,10 +27,23 @@ int rank(std::uint16_t error_id)
   return static_cast<int>(std::find(ORDER.begin(), ORDER.end(), error_id) - ORDER.begin());
 }
 
+/// What a lock's error says more than its id, if anything.
+std::string whyLocked(TimePoint now, const Inverter& inverter, const Publisher& publisher)
+{
+  if (inverter.interlock.isFaulted())
+  {
+    return lockedText(true);
+  }
+  return inverter.known() && !inverter.interlock.locked(now)
+             ? "locked for " + wire::shown(publisher.name) +
+                   ", which has neither sent 0 nor been silent since the last stop"
+             : "";
+}
+
 /// Why the inverter takes no velocity of \p publisher now; 0: it does. \p why only where it says more than the id.
 std::uint16_t obstacle(TimePoint now, const Inverter& inverter, const Publisher& publisher, std::string& why)
 {
-  // That it is the wrong drive says more than that it tells no status (the order of section 2).
+  // That it is the wrong drive says more than that it tells no status (the order of ids: contract, section 2).
   const bool wrong = inverter.settings.identity() == Identity::Wrong;
   if (inverter.offline() && !wrong)
   {
@@ -44,6 +57,7 @@ std::uint16_t obstacle(TimePoint now, const Inverter& inverter, const Publisher&
   if (!inverter.known())
   {
     // Silence counts from the first status, not from a stop that was confirmed before it.
+    why = whyLocked(now, inverter, publisher);
     return ERROR_LOCKED;
   }
   if (inverter.reset_active)
@@ -67,9 +81,7 @@ std::uint16_t obstacle(TimePoint now, const Inverter& inverter, const Publisher&
     case Permission::StopPending:
       return ERROR_CANCELLED;
     case Permission::Locked:
-      why = inverter.interlock.locked(now) ? ""
-                                           : "locked for " + wire::shown(publisher.name) +
-                                                 ", which has neither sent 0 nor been silent since the last stop";
+      why = whyLocked(now, inverter, publisher);
       return ERROR_LOCKED;
     default:
       return 0;
@@ -226,8 +238,9 @@ void Coordinator::tellRefusal(TimePoint now, const VelocityCommand& command, con
   {
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
-    one.text.empty() ? inverters_[target.first]->refuseForOther(error_id, reasons)
-                     : inverters_[target.first]->refuseCommand(error_id, one.text);
+    Inverter& inverter = *inverters_[target.first];
+    one.error_id == error_id ? inverter.refuseCommand(error_id, one.text)
+                             : inverter.refuseForOther(error_id, reasons, one.error_id, one.text);
     refusals_.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
                                                            : "the group was refused: " + reasons);
   }
@@ -530,7 +543,7 @@ void Coordinator::stopConfirmed(TimePoint now, Inverter& inverter)
 ServiceBounds Coordinator::bounds() const
 {
   ServiceBounds bounds;
-  // Slow buses and long scan lists get more time; the README states how much.
+  // Slow buses and long scan lists get more time; docs/commands.md states how much.
   const double exchange = toSeconds(budget_.longest_exchange);
   const double inverters = static_cast<double>(inverters_.size());
   bounds.stop = std::max(bounds.stop, 3.0 * exchange * inverters);

@@ -37,6 +37,13 @@ std::string errorIdText(std::uint16_t error_id)
   return text;
 }
 
+std::string lockedText(bool tripped)
+{
+  const std::string neutral = "send 0, or stay silent for a moment, before the next movement";
+  return tripped ? "locked, since the drive has tripped: remove the cause and call reset, then " + neutral
+                 : "locked: " + neutral;
+}
+
 std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code)
 {
   if (error_id == wire::ERROR_TIMEOUT && gateway_code != 0)
@@ -67,7 +74,7 @@ std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code)
     case ERROR_NOT_OFFERED:
       return "not offered by this drive";
     case ERROR_LOCKED:
-      return "locked: send 0, or stay silent for a moment, before the next movement";
+      return lockedText(false);
     case ERROR_NOT_ARMED:
       return "not armed: values of the profile are missing or unconfirmed";
     default:

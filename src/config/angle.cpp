@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "angle.h"
+#include "config/angle.h"
 
 #include <cctype>
 #include <cmath>
 #include <cstddef>
 
-#include "numerals.h"
+#include "config/numerals.h"
 
 namespace inverter_bus
 {

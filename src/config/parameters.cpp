@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "inverter_bus/config/shown.h"
-#include "inverter_bus/config/yaml.h"
+#include "config/shown.h"
+#include "config/yaml.h"
 
 namespace inverter_bus
 {

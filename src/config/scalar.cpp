@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/config/scalar.h"
+#include "config/scalar.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,8 +11,8 @@
 #include <sstream>
 #include <vector>
 
-#include "angle.h"
-#include "numerals.h"
+#include "config/angle.h"
+#include "config/numerals.h"
 
 namespace inverter_bus
 {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/config/shown.h"
+#include "config/shown.h"
 
 #include <cstdint>
 
-#include "utf8.h"
+#include "config/utf8.h"
 
 namespace inverter_bus
 {

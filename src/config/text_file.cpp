@@ -7,7 +7,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "inverter_bus/config/yaml.h"
+#include "config/yaml.h"
 
 namespace inverter_bus
 {

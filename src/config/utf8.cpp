@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "utf8.h"
+#include "config/utf8.h"
 
 namespace inverter_bus
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/config/yaml.h"
+#include "config/yaml.h"
 
 #include <algorithm>
 #include <set>
@@ -8,8 +8,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "inverter_bus/config/shown.h"
-#include "yaml_text.h"
+#include "config/shown.h"
+#include "config/yaml_text.h"
 
 namespace inverter_bus
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "yaml_spacing.h"
+#include "config/yaml_spacing.h"
 
 #include <algorithm>
 #include <cstddef>

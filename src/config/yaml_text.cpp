@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "yaml_text.h"
+#include "config/yaml_text.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,8 +10,8 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
-#include "utf8.h"
-#include "yaml_spacing.h"
+#include "config/utf8.h"
+#include "config/yaml_spacing.h"
 
 namespace inverter_bus
 {

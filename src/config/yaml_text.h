@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "inverter_bus/config/yaml.h"
+#include "config/yaml.h"
 
 namespace inverter_bus
 {

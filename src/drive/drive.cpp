@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "codec.h"
-#include "compoway_codec.h"
-#include "numbers.h"
-#include "read_plan.h"
-#include "status_fields.h"
+#include "drive/codec/codec.h"
+#include "drive/codec/compoway_codec.h"
+#include "drive/codec/read_plan.h"
+#include "drive/profile/numbers.h"
+#include "drive/profile/status_fields.h"
 
 namespace inverter_bus
 {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "codec.h"
+#include "drive/codec/codec.h"
+#include "drive/codec/read_plan.h"
+#include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
-#include "numbers.h"
-#include "read_plan.h"
 
 namespace inverter_bus
 {

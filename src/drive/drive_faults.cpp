@@ -4,11 +4,11 @@
 
 #include <cstdio>
 
-#include "codec.h"
+#include "drive/codec/codec.h"
+#include "drive/codec/read_plan.h"
+#include "drive/profile/numbers.h"
+#include "drive/profile/status_fields.h"
 #include "inverter_bus/drive/drive.h"
-#include "numbers.h"
-#include "read_plan.h"
-#include "status_fields.h"
 
 namespace inverter_bus
 {

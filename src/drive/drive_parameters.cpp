@@ -7,9 +7,9 @@
 #include <limits>
 #include <regex>
 
-#include "codec.h"
+#include "drive/codec/codec.h"
+#include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
-#include "numbers.h"
 
 namespace inverter_bus
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/commands.h"
+#include "ros/commands.h"
 
 #include <utility>
 
@@ -8,7 +8,7 @@
 #include <ros/transport_hints.h>
 #include <boost/function.hpp>
 
-#include "inverter_bus/bus/velocity_group.h"
+#include "bus/rules/velocity_group.h"
 
 namespace inverter_bus
 {

@@ -5,10 +5,10 @@
 
 #include <ros/init.h>
 
-#include "inverter_bus/ros/command_line.h"
-#include "inverter_bus/ros/lifetime.h"
-#include "inverter_bus/ros/node.h"
-#include "inverter_bus/ros/start_up.h"
+#include "ros/command_line.h"
+#include "ros/lifetime.h"
+#include "ros/node.h"
+#include "ros/start_up.h"
 
 namespace
 {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/master_watch.h"
+#include "ros/master_watch.h"
 
 #include <chrono>
 
 #include <ros/master.h>
 #include <ros/this_node.h>
 
-#include "inverter_bus/ros/log.h"
+#include "ros/log.h"
 
 namespace inverter_bus
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/node.h"
+#include "ros/node.h"
 
 #include <chrono>
 #include <optional>
@@ -13,16 +13,16 @@
 #include <ros/this_node.h>
 
 #include "inverter_bus/bus/bus.h"
-#include "inverter_bus/ros/commands.h"
-#include "inverter_bus/ros/diagnostics.h"
-#include "inverter_bus/ros/log.h"
-#include "inverter_bus/ros/master_watch.h"
-#include "inverter_bus/ros/parameters.h"
-#include "inverter_bus/ros/publishing.h"
-#include "inverter_bus/ros/services.h"
-#include "inverter_bus/ros/start_up.h"
-#include "inverter_bus/ros/trace_files.h"
 #include "inverter_bus/wire/serial_port.h"
+#include "ros/commands.h"
+#include "ros/diagnostics.h"
+#include "ros/log.h"
+#include "ros/master_watch.h"
+#include "ros/parameters.h"
+#include "ros/publishing.h"
+#include "ros/services.h"
+#include "ros/start_up.h"
+#include "ros/trace_files.h"
 
 namespace inverter_bus
 {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/publishing.h"
+#include "ros/publishing.h"
 
 #include <chrono>
 #include <utility>
 
-#include "inverter_bus/ros/log.h"
-#include "inverter_bus/ros/status_conversion.h"
+#include "ros/log.h"
+#include "ros/status_conversion.h"
 
 namespace inverter_bus
 {

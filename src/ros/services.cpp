@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/services.h"
+#include "ros/services.h"
 
 #include <chrono>
 #include <limits>
@@ -10,10 +10,10 @@
 #include <ros/advertise_service_options.h>
 #include <boost/function.hpp>
 
-#include "inverter_bus/ros/status_conversion.h"
-#include "inverter_bus/ros/steady_event.h"
 #include "inverter_bus/wire/request.h"
-#include "inverter_bus/wire/shown_number.h"
+#include "ros/status_conversion.h"
+#include "ros/steady_event.h"
+#include "wire/shown_number.h"
 
 namespace inverter_bus
 {

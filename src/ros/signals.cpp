@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/signals.h"
+#include "ros/signals.h"
 
 #include <poll.h>
 #include <sys/eventfd.h>

@@ -14,14 +14,14 @@
 
 #include <ros/ros.h>
 
+#include "bench/scan_list.h"
 #include "inverter_bus/InjectFault.h"
-#include "inverter_bus/bench/scan_list.h"
 #include "inverter_bus/drive/profile.h"
-#include "inverter_bus/ros/command_line.h"
-#include "inverter_bus/ros/parameters.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "inverter_bus/simulation/bus_runner.h"
 #include "inverter_bus/simulation/simulated_bus.h"
+#include "ros/command_line.h"
+#include "ros/parameters.h"
 
 namespace
 {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/start_up.h"
+#include "ros/start_up.h"
 
 #include <chrono>
 #include <sstream>
 
 #include <ros/master.h>
 
-#include "inverter_bus/ros/log.h"
-#include "inverter_bus/ros/trace_files.h"
-#include "inverter_bus/wire/shown_number.h"
+#include "ros/log.h"
+#include "ros/trace_files.h"
+#include "wire/shown_number.h"
 
 namespace inverter_bus
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include "inverter_bus/ros/trace_files.h"
+#include "ros/trace_files.h"
 
 #include <fcntl.h>
 #include <pwd.h>
@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "inverter_bus/ros/trace_text.h"
-#include "inverter_bus/wire/shown.h"
+#include "ros/trace_text.h"
+#include "wire/shown.h"
 
 namespace inverter_bus
 {

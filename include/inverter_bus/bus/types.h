@@ -30,6 +30,9 @@ constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
 /// One sentence for an error id that needs no drive to explain it.
 std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code = 0);
 
+/// What 0xB005 says: what opens the lock, after a trip of the drive that was not reset yet as well.
+std::string lockedText(bool tripped);
+
 /// An error id as the documents write it: "0x0205".
 std::string errorIdText(std::uint16_t error_id);
 

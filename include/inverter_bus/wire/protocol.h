@@ -73,7 +73,7 @@ public:
   virtual std::size_t replyLength(const Request& request) const = 0;
 
   /// Replies of equal shape cannot be told apart: station, function and whatever of the request a reply repeats. Two
-  /// requests with equal shapes must not follow each other after a time-out (rule 9 of the scheduler). Behind a gateway
+  /// requests with equal shapes must not follow each other after a time-out (rule 3.9). Behind a gateway
   /// without station and transaction number: whether they tell, only the gateway shows (GatewayRecord).
   virtual std::string shape(const Request& request) const = 0;
   /// The shape that the valid frame \p reply from the wire would answer to; empty if none. An exception repeats nothing

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus/rules/budget.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "bus/rules/scheduler.h"
+#include "wire/shown_number.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
+constexpr double RETURN_S = 3.0;
+constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
+
+std::string milliseconds(Duration duration)
+{
+  std::ostringstream text;
+  text.precision(1);
+  text << std::fixed << toSeconds(duration) * 1e3 << " ms";
+  return text.str();
+}
+}  // namespace
+
+namespace
+{
+/// Block read and write, what is settled at connect.
+void addSpecialRequests(const InverterConfig& config, const drive::Drive& drive, std::vector<wire::Request>& requests)
+{
+  if (const auto block = drive.chosenRead(config.block_read))
+  {
+    std::vector<drive::Word> words;
+    for (const auto& entry : drive.profile().block->select)
+    {
+      words.emplace_back(entry.first, 0);
+    }
+    requests.push_back(drive.read(config.node, *block));
+    requests.push_back(drive.writeChosen(config.node, words));
+    requests.push_back(drive.writeAndRead(config.node, words, *block));
+  }
+  if (const auto attributes = drive.readAttributes(config.node))
+  {
+    requests.push_back(*attributes);
+  }
+  if (const drive::Sequence* connect = drive.sequence("connect"))
+  {
+    for (const drive::Step& step : connect->steps)
+    {
+      requests.push_back(drive.command(config.node, step));
+    }
+  }
+}
+}  // namespace
+
+Budget::Budget(const Configuration& configuration, const wire::Line& line) : configuration_(configuration), line_(line)
+{
+}
+
+std::vector<wire::Request> Budget::requests(std::size_t index) const
+{
+  const InverterConfig& config = configuration_.bus.inverters[index];
+  const drive::Drive& drive = configuration_.drives[index];
+  std::vector<wire::Request> requests;
+  for (const auto* blocks : { &drive.fastBlocks(), &drive.slowBlocks(), &drive.faultBlocks() })
+  {
+    for (const drive::ReadBlock& block : *blocks)
+    {
+      requests.push_back(drive.read(config.node, block));
+    }
+  }
+  for (const char* name : { "forward", "reverse", "stop", "reset" })
+  {
+    if (const drive::Sequence* sequence = drive.sequence(name))
+    {
+      for (const drive::Step& step : sequence->steps)
+      {
+        requests.push_back(drive.write(config.node, step.point, step.value.value_or(0)));
+      }
+    }
+  }
+  addSpecialRequests(config, drive, requests);
+  for (wire::Request& request : requests)
+  {
+    request.response_timeout = seconds(config.response_timeout);
+    request.reply_delay = seconds(drive.profile().reply_delay);
+  }
+  return requests;
+}
+
+Duration Budget::readCost(std::size_t index, const drive::ReadBlock& block) const
+{
+  const drive::Drive& drive = configuration_.drives[index];
+  return line_.cost(drive.read(configuration_.bus.inverters[index].node, block), seconds(drive.profile().reply_delay));
+}
+
+Duration Budget::refreshCost(std::size_t index) const
+{
+  Duration cost{ 0 };
+  for (const drive::ReadBlock& block : configuration_.drives[index].fastBlocks())
+  {
+    cost += readCost(index, block);
+  }
+  return cost;
+}
+
+Duration Budget::cycle() const
+{
+  Duration fast{ 0 };
+  Duration slow{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    fast += refreshCost(index);
+    for (const drive::ReadBlock& block : configuration_.drives[index].slowBlocks())
+    {
+      slow +=
+          line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block), Duration{ 0 });
+    }
+  }
+  // Slow values come once a second each: they take this share of the time.
+  const double share = std::min(0.5, toSeconds(slow));
+  return seconds(toSeconds(fast) / (1.0 - share));
+}
+
+Duration Budget::longestExchange() const
+{
+  Duration longest{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    for (const wire::Request& request : requests(index))
+    {
+      // A reply may begin when its time is almost up: nothing on the line takes longer.
+      longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
+    }
+  }
+  // One that breaks off, or pauses, ends a pause later.
+  return longest + line_.patience();
+}
+
+Duration Budget::worstStop() const
+{
+  Duration frame{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    if (const drive::Sequence* stop = configuration_.drives[index].sequence("stop"))
+    {
+      const drive::Step& step = stop->steps.front();
+      wire::Request request = configuration_.drives[index].write(1, step.point, step.value.value_or(0));
+      request.response_timeout = Duration{ 0 };
+      // Two gaps: the second one ends the frame for the drive.
+      frame = std::max(frame, line_.costUnanswered(request));
+    }
+  }
+  return longestExchange() + frame;
+}
+
+Duration Budget::velocityUnit(std::size_t index) const
+{
+  const drive::Drive& drive = configuration_.drives[index];
+  Duration unit{ 0 };
+  if (const drive::Sequence* forward = drive.sequence("forward"))
+  {
+    for (const drive::Step& step : forward->steps)
+    {
+      unit += line_.cost(drive.write(configuration_.bus.inverters[index].node, step.point, step.value.value_or(0)),
+                         seconds(drive.profile().reply_delay));
+    }
+  }
+  return unit;
+}
+
+Duration Budget::longestGap() const
+{
+  Duration commands{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    commands += static_cast<int>(configuration_.drives[index].fastBlocks().size()) * velocityUnit(index);
+  }
+  return cycle() + commands + seconds(configuration_.bus.interval) + longestExchange();
+}
+
+Duration Budget::deadlineMargin() const
+{
+  Duration margin = longestExchange();
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    Duration read{ 0 };
+    for (const drive::ReadBlock& block : configuration_.drives[index].fastBlocks())
+    {
+      read = std::max(read, readCost(index, block));
+    }
+    margin += read + velocityUnit(index);
+  }
+  return margin;
+}
+
+std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Duration timeout) const
+{
+  return judgeDriveTimeout(name, timeout, deadlineMargin());
+}
+
+std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Duration timeout, Duration margin)
+{
+  if (timeout > margin)
+  {
+    return std::nullopt;
+  }
+  return Finding{ Level::Warn, name + ": its own communication time-out of " + milliseconds(timeout) +
+                                   " can't be met for certain: up to " + milliseconds(margin) +
+                                   " may lie between two frames; raise it, or the baud rate, or take fewer inverters" };
+}
+
+Budget::Figures Budget::figures() const
+{
+  Figures figures;
+  figures.cycle = cycle();
+  figures.worst_stop = worstStop();
+  figures.longest_exchange = longestExchange();
+  figures.deadline_margin = deadlineMargin();
+  figures.findings = findings();
+  return figures;
+}
+
+std::string Budget::behindGateway() const
+{
+  return configuration_.bus.modbus_tcp ? " and up to " + milliseconds(seconds(configuration_.bus.gateway_timeout)) +
+                                             " for each inverter that does not answer"
+                                       : "";
+}
+
+Duration Budget::longestReturn(Duration block, std::size_t offline)
+{
+  const double each = std::max(toSeconds(block) / PROBE_SHARE, PROBE_PERIOD_S);
+  return seconds(std::max(RETURN_S, static_cast<double>(std::max<std::size_t>(offline, 1)) * each));
+}
+
+/// Contract, 8.8: what the probes' share makes of 3.7 where the gateway is kept for long.
+std::optional<Finding> Budget::returnBehindGateway() const
+{
+  const Duration block = seconds(configuration_.bus.gateway_timeout);
+  if (!configuration_.bus.modbus_tcp || block <= seconds(SHORT_BLOCK_S))
+  {
+    return std::nullopt;
+  }
+  return Finding{ Level::Ok,
+                  "an inverter that was offline may need up to " + wire::shownDuration(longestReturn(block, 1)) +
+                      " (times the number of those that are offline) to be back, if a silent station keeps the "
+                      "gateway for gateway_timeout (" +
+                      wire::shownDuration(block) + "); " + wire::shownDuration(longestReturn({}, 1)) +
+                      " if it does so for " + wire::shownDuration(seconds(SHORT_BLOCK_S)) + " at most" };
+}
+
+std::vector<Finding> Budget::findings() const
+{
+  std::vector<Finding> findings;
+  findings.push_back({ Level::Ok, "bus budget: status cycle " + milliseconds(cycle()) + ", worst stop latency " +
+                                      milliseconds(worstStop()) + behindGateway() +
+                                      " (plus the ramp), longest gap between two frames to "
+                                      "an inverter " +
+                                      milliseconds(longestGap()) });
+  if (const auto finding = returnBehindGateway())
+  {
+    findings.push_back(*finding);
+  }
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    const InverterConfig& config = configuration_.bus.inverters[index];
+    if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
+    {
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + wire::shownNumber(config.command_timeout) +
+                                            " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
+    }
+    const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;
+    if (loss.timeout_parameter.empty() && loss.assumed_timeout > 0.0)
+    {
+      if (const auto finding = judgeDriveTimeout(config.name, seconds(loss.assumed_timeout)))
+      {
+        findings.push_back(*finding);
+      }
+    }
+  }
+  return findings;
+}
+}  // namespace bus
+}  // namespace inverter_bus

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_BUDGET_H
+#define INVERTER_BUS_BUS_BUDGET_H
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inverter_bus/bus/configuration.h"
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What the bus can do, computed before anything is sent (contract, rule 3.11): every exchange has a cost on the wire.
+/// The drives' own processing time is not known before they answer; the figures are the wire's limit. Pure.
+class Budget
+{
+public:
+  /// Everything that the running bus needs of it, to be computed once.
+  struct Figures
+  {
+    Duration cycle{ 0 };
+    Duration worst_stop{ 0 };
+    Duration longest_exchange{ 0 };
+    Duration deadline_margin{ 0 };
+    std::vector<Finding> findings;
+  };
+
+  Budget(const Configuration& configuration, const wire::Line& line);
+
+  /// One status cycle of all inverters without commands, slow values included in proportion.
+  Duration cycle() const;
+  /// Acceptance of a stop to the last bit of its frame: the longest exchange in flight, unanswered, then the frame.
+  Duration worstStop() const;
+  /// Longest time between two frames to the same inverter: every read of the cycle alternates with a velocity of one
+  /// inverter, and one exchange is lost.
+  Duration longestGap() const;
+  /// How long a drive whose own time-out comes near may have to wait for its turn all the same: an exchange in flight, a
+  /// velocity for all inverters under way, and every other drive's turn before it.
+  Duration deadlineMargin() const;
+  /// The longest exchange in use: its reply begins when its time is almost up, and has a pause in it.
+  Duration longestExchange() const;
+  Figures figures() const;
+
+  /// Lines for the log: the figures, and WARN where a time-out can't be met.
+  std::vector<Finding> findings() const;
+  /// WARN if a drive's own \p timeout can't be met.
+  std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout) const;
+  /// The same with deadlineMargin() at hand.
+  static std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout, Duration margin);
+
+  /// How long an inverter that answers again may stay offline behind a gateway which each silent station keeps for \p block:
+  /// the probes of \p offline inverters (itself included, at least 1) take turns. With a short block what rule 3.7 says.
+  static Duration longestReturn(Duration block, std::size_t offline);
+
+private:
+  Duration readCost(std::size_t index, const drive::ReadBlock& block) const;
+  Duration refreshCost(std::size_t index) const;
+  Duration velocityUnit(std::size_t index) const;
+  std::vector<wire::Request> requests(std::size_t index) const;
+  std::string behindGateway() const;
+  std::optional<Finding> returnBehindGateway() const;
+
+  const Configuration& configuration_;
+  const wire::Line& line_;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_BUDGET_H

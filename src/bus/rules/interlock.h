@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_INTERLOCK_H
+#define INVERTER_BUS_BUS_INTERLOCK_H
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What a velocity that is not 0 may do right now.
+enum class Permission
+{
+  Granted,
+  /// An old message of a latched publisher: no effect at all.
+  Repeat,
+  Offline,
+  StopPending,
+  Locked
+};
+
+/// Return to neutral and dead man of one inverter (contract, sections 4.2 and 4.3), as one pure state machine: time comes
+/// in, permissions come out.
+///
+///     start-up ----+
+///     stop --------+--> LOCKED --(stop confirmed, no fault, online, and the publisher has sent 0 or was silent)--> free
+///     dead man ----+       ^                                                                                       |
+///     fault -------+       +---------------------------------------------------------------------------------------+
+///     offline -----+
+///
+/// A lock counts per publisher: whoever has not returned to neutral since stays refused, whatever others do. Not thread
+/// safe; the bus guards it.
+class Interlock
+{
+public:
+  /// \p command_timeout [s] without an accepted command before deadManDue(); 0: never.
+  explicit Interlock(double command_timeout);
+
+  // --- what happened ----------------------------------------------------------------------------------------------
+  /// The inverter has answered for the first time (start-up) or again (return): the silence counts from here.
+  void online(TimePoint now);
+  void offline();
+  /// A stop was asked for by anybody but a command of 0: everybody must return to neutral.
+  void stopRequested();
+  void stopConfirmed(TimePoint now);
+  void faulted(bool faulted);
+
+  // --- velocities -------------------------------------------------------------------------------------------------
+  /// Judges a velocity other than 0 and changes nothing.
+  Permission judge(TimePoint now, const Publisher& publisher) const;
+  /// Books a velocity other than 0. \p accepted: it was granted and is in range; feeds the dead man. A refused one ends
+  /// the publisher's neutral: a stream of refused commands must not come through when the lock's reason goes away.
+  void commanded(TimePoint now, const Publisher& publisher, bool accepted);
+  /// Books a velocity of 0: neutral for this publisher.
+  void zeroed(TimePoint now, const Publisher& publisher);
+  /// Books a velocity near 0: for the lock as if nothing had come, so that it neither ends a silence nor is a return to
+  /// neutral; for the dead man as a 0.
+  void nearlyZeroed(TimePoint now, const Publisher& publisher);
+  /// No RUN of ours is in force any more: nothing for the dead man to watch.
+  void resting();
+
+  // --- answers ----------------------------------------------------------------------------------------------------
+  /// A command is in force and none has come for `command_timeout`.
+  bool deadManDue(TimePoint now) const;
+  /// When deadManDue() becomes true if nothing comes; nothing: never.
+  std::optional<TimePoint> deadManAt() const;
+  /// What status shows: true while nobody has returned to neutral and a stream goes on being refused, or the lock's reason
+  /// is not over. False, a publisher whose stream has never paused is still refused: the lock counts per publisher.
+  bool locked(TimePoint now) const;
+  /// Silence that unlocks for somebody who was never heard; whoever sends slowly needs twice his spacing.
+  Duration silenceNeeded() const;
+  bool stopPending() const;
+  bool isOffline() const;
+  bool isFaulted() const;
+  /// Publishers whose non-zero commands came within the last 2 s.
+  unsigned activePublishers(TimePoint now) const;
+
+private:
+  struct Stream
+  {
+    /// The last message that breaks a silence; nothing: none has come yet.
+    std::optional<TimePoint> last;
+    /// The last message of any kind.
+    TimePoint heard;
+    std::array<Duration, 3> spacings{};
+    std::size_t next_spacing = 0;
+    bool neutral = false;
+    unsigned admitted = 0;
+    bool nonzero = false;
+    std::set<std::string> topics;
+  };
+  bool open() const;
+  bool silent(TimePoint now, const Stream* stream) const;
+  const Stream* find(const std::string& name) const;
+  Stream& hear(TimePoint now, const Publisher& publisher);
+  Stream& book(TimePoint now, const Publisher& publisher);
+  void lock();
+
+  Duration command_timeout_;
+  std::map<std::string, Stream> streams_;
+  /// The last message of any publisher that is not in streams_ any more.
+  TimePoint forgotten_last_;
+  unsigned generation_ = 1;
+  bool released_ = false;
+  bool stop_pending_ = false;
+  bool faulted_ = false;
+  bool offline_ = false;
+  /// A status was read since the start.
+  bool seen_ = false;
+  std::optional<TimePoint> neutral_since_;
+  std::optional<TimePoint> last_accepted_;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_INTERLOCK_H

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_SRC_DRIVE_PROFILE_SKIP_H
+#define INVERTER_BUS_SRC_DRIVE_PROFILE_SKIP_H
+
+#include <string>
+#include <vector>
+
+#include "drive/profile/yaml_value.h"
+
+namespace inverter_bus
+{
+namespace drive
+{
+/// Takes what \p names leave out (see skippableFields()) from the tree of a profile, before anybody makes reads or marks
+/// of it. What a drive does not have is left out already. Constants that only such items used go with them.
+void skipFields(YamlValue& root, const std::vector<std::string>& names);
+}  // namespace drive
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_SRC_DRIVE_PROFILE_SKIP_H

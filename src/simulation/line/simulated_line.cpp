@@ -1,0 +1,523 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+
+#include "inverter_bus/simulation/simulated_line.h"
+
+#include <algorithm>
+
+#include "simulation/compoway/compoway_frame.h"
+
+namespace inverter_bus
+{
+namespace simulation
+{
+using Source = FrameRecord::Source;
+
+namespace
+{
+constexpr std::size_t LONGEST_UNFINISHED = 256;  // [bytes] more without an end is nothing that any drive keeps
+
+std::string stationOf(const Bytes& frame, Protocol protocol)
+{
+  if (protocol == Protocol::ModbusRtu)
+  {
+    return std::to_string(frame.front());
+  }
+  const std::optional<Bytes> found = findCompowayFrame(frame);
+  return found ? compowayBody(*found).substr(0, 2) : std::string();
+}
+}  // namespace
+
+SimulatedLine::SimulatedLine(const LineOptions& options, TimePoint start)
+  : options_(options)
+  , character_(options.settings.characterTime())
+  , gap_(options.settings.frameGap())
+  , end_(options.settings.frameEnd())
+  , random_(options.seed)
+  , last_activity_(start - std::chrono::hours(1))
+  , last_seen_(last_activity_)
+{
+}
+
+void SimulatedLine::attach(SimulatedDrive& drive)
+{
+  drive.setLine(options_.settings);
+  drives_.push_back(&drive);
+}
+
+void SimulatedLine::setObserver(std::function<void(const FrameRecord&)> observer)
+{
+  observer_ = std::move(observer);
+}
+
+const LineCounters& SimulatedLine::counters() const
+{
+  return counters_;
+}
+
+void SimulatedLine::clearCounters()
+{
+  counters_ = LineCounters();
+}
+
+const LineOptions& SimulatedLine::options() const
+{
+  return options_;
+}
+
+bool SimulatedLine::idle() const
+{
+  return live_.empty() && owed_.empty() && waiting_.empty();
+}
+
+void SimulatedLine::setEcho(bool on)
+{
+  echo_ = on;
+}
+
+void SimulatedLine::setSilent(bool on)
+{
+  silent_ = on;
+}
+
+void SimulatedLine::setMaster(const LineSettings& settings, TimePoint now)
+{
+  advance(now);
+  options_.settings = settings;
+  character_ = settings.characterTime();
+  gap_ = settings.frameGap();
+  end_ = settings.frameEnd();
+  for (SimulatedDrive* drive : drives_)
+  {
+    drive->setLine(settings);
+  }
+}
+
+void SimulatedLine::setConnected(bool connected, TimePoint now)
+{
+  advance(now);
+  connected_ = connected;
+  output_.clear();
+  Transmission* sending = openRequest(Source::Master);
+  if (!connected && sending != nullptr)
+  {
+    std::vector<WireByte>& bytes = sending->bytes;
+    bytes.erase(std::remove_if(bytes.begin(), bytes.end(), [now](const WireByte& byte) { return byte.start > now; }),
+                bytes.end());
+    last_activity_ = std::min(last_activity_, std::max(now, endOf(*sending)));
+  }
+}
+
+bool SimulatedLine::isRequest(const Transmission& transmission)
+{
+  return transmission.source == Source::Master || transmission.source == Source::ForeignMaster;
+}
+
+TimePoint SimulatedLine::endOf(const Transmission& transmission) const
+{
+  return transmission.bytes.empty() ? TimePoint() : transmission.bytes.back().start + character_;
+}
+
+TimePoint SimulatedLine::dueTime(const Transmission& transmission) const
+{
+  const TimePoint end = endOf(transmission);
+  if (transmission.for_master && transmission.delivered < transmission.bytes.size())
+  {
+    const TimePoint first = transmission.bytes[transmission.delivered].start + character_;
+    const bool whole = options_.delivery_step == Duration::zero();
+    return whole ? end : std::min(end, first + options_.delivery_step);
+  }
+  return isRequest(transmission) ? end + end_ : end;
+}
+
+SimulatedLine::Transmission& SimulatedLine::open(Source source)
+{
+  live_.emplace_back();
+  live_.back().source = source;
+  return live_.back();
+}
+
+SimulatedLine::Transmission* SimulatedLine::openRequest(Source source)
+{
+  for (Transmission& transmission : live_)
+  {
+    if (transmission.source == source && !transmission.served)
+    {
+      return &transmission;
+    }
+  }
+  return nullptr;
+}
+
+void SimulatedLine::append(Transmission& transmission, const Bytes& bytes, TimePoint start)
+{
+  const std::size_t first = transmission.bytes.size();
+  const unsigned int sent_bits = options_.settings.data_bits == 7 ? 0x7FU : 0xFFU;
+  for (const std::uint8_t value : bytes)
+  {
+    transmission.bytes.push_back({ start, static_cast<std::uint8_t>(value & sent_bits), false });
+    start += character_;
+  }
+  collide(transmission, first);
+  last_activity_ = std::max(last_activity_, start);
+}
+
+void SimulatedLine::collide(Transmission& added, std::size_t first)
+{
+  const auto damage = [this](Transmission& transmission, WireByte& byte) {
+    if (!byte.damaged)
+    {
+      byte.damaged = true;
+      byte.value = static_cast<std::uint8_t>(byte.value ^ random_.damage());
+    }
+    counters_.collisions += transmission.collided ? 0 : 1;
+    transmission.collided = true;
+  };
+  for (Transmission& other : live_)
+  {
+    if (&other == &added || other.bytes.empty() || endOf(other) <= added.bytes[first].start ||
+        other.bytes.front().start >= endOf(added))
+    {
+      continue;
+    }
+    for (std::size_t i = first; i < added.bytes.size(); ++i)
+    {
+      for (WireByte& byte : other.bytes)
+      {
+        const TimePoint start = added.bytes[i].start;
+        if (byte.start < start + character_ && start < byte.start + character_)
+        {
+          damage(added, added.bytes[i]);
+          damage(other, byte);
+        }
+      }
+    }
+  }
+}
+
+void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
+{
+  advance(now);
+  if (!connected_ || bytes.empty())
+  {
+    return;
+  }
+  Transmission* sending = openRequest(Source::Master);
+  const bool next_frame = sending != nullptr && wholeForAny(valuesOf(*sending));
+  const TimePoint start = sending == nullptr ? now : std::max(now, endOf(*sending));
+  const bool in_time = sending != nullptr && now + options_.gap_tolerance >= endOf(*sending) + gap_;
+  if (next_frame && (in_time || options_.gap == GapRule::Ignore))
+  {
+    finishRequest(*sending);
+    sending = nullptr;
+  }
+  if (sending == nullptr)
+  {
+    const TimePoint silent_since = std::max(last_activity_, last_seen_);
+    sending = &open(Source::Master);
+    sending->early = unfinished_.empty() && start + options_.gap_tolerance < silent_since + gap_;
+    sending->for_master = echo_;
+  }
+  sending->joined = sending->joined || (next_frame && !sending->bytes.empty());
+  append(*sending, bytes, start);
+}
+
+void SimulatedLine::sendForeign(const Bytes& frame, bool wait, TimePoint now)
+{
+  advance(now);
+  if (!frame.empty())
+  {
+    waiting_.push_back({ wait ? std::max(now, last_activity_ + gap_) : now, frame });
+    advance(now);
+  }
+}
+
+void SimulatedLine::sendNoise(std::size_t count, TimePoint now)
+{
+  advance(now);
+  Bytes bytes(count);
+  std::generate(bytes.begin(), bytes.end(), [this] { return random_.byte(); });
+  if (!bytes.empty())
+  {
+    append(open(Source::Noise), bytes, now);
+  }
+}
+
+std::optional<TimePoint> SimulatedLine::nextEvent() const
+{
+  std::optional<TimePoint> next;
+  const auto consider = [&next](TimePoint time) { next = next ? std::min(*next, time) : time; };
+  for (const Transmission& transmission : live_)
+  {
+    consider(dueTime(transmission));
+  }
+  for (const Owed& owed : owed_)
+  {
+    consider(owed.start);
+  }
+  for (const WaitingForeign& waiting : waiting_)
+  {
+    consider(waiting.start);
+  }
+  return next;
+}
+
+void SimulatedLine::advance(TimePoint now)
+{
+  for (std::optional<TimePoint> next = nextEvent(); next && *next <= now; next = nextEvent())
+  {
+    process(*next);
+  }
+}
+
+void SimulatedLine::process(TimePoint time)
+{
+  processForeign(time);
+  processOwed(time);
+  for (std::size_t i = 0; i < live_.size(); ++i)
+  {
+    if (dueTime(live_[i]) <= time)
+    {
+      processTransmission(live_[i], time);
+    }
+  }
+  live_.erase(std::remove_if(live_.begin(), live_.end(), [](const Transmission& one) { return one.over; }),
+              live_.end());
+}
+
+void SimulatedLine::processForeign(TimePoint time)
+{
+  for (std::size_t i = 0; i < waiting_.size(); ++i)
+  {
+    if (waiting_[i].start > time)
+    {
+      continue;
+    }
+    const Bytes bytes = waiting_[i].bytes;
+    waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
+    ++counters_.foreign;
+    append(open(Source::ForeignMaster), bytes, time);
+    return;
+  }
+}
+
+void SimulatedLine::processOwed(TimePoint time)
+{
+  const auto later = [time](const Owed& owed) { return owed.start > time; };
+  const auto due = std::stable_partition(owed_.begin(), owed_.end(), later);
+  const std::vector<Owed> now_due(due, owed_.end());
+  owed_.erase(due, owed_.end());
+  for (const Owed& owed : now_due)
+  {
+    owed.drive->advance(time);
+    if (owed.drive->canSend() && !silent_ && !owed.bytes.empty())
+    {
+      Transmission& reply = open(Source::Drive);
+      reply.drive = owed.drive;
+      append(reply, owed.bytes, owed.start);
+    }
+  }
+}
+
+void SimulatedLine::processTransmission(Transmission& transmission, TimePoint time)
+{
+  if (transmission.for_master && transmission.delivered < transmission.bytes.size())
+  {
+    deliver(transmission, time);
+  }
+  if (dueTime(transmission) > time)
+  {
+    return;
+  }
+  transmission.over = true;
+  if (isRequest(transmission))
+  {
+    finishRequest(transmission);
+  }
+  else
+  {
+    finishReply(transmission);
+  }
+}
+
+void SimulatedLine::deliver(Transmission& transmission, TimePoint time)
+{
+  Delivery delivery;
+  while (transmission.delivered < transmission.bytes.size())
+  {
+    const WireByte& byte = transmission.bytes[transmission.delivered];
+    if (byte.start + character_ > time)
+    {
+      break;
+    }
+    delivery.time = byte.start + character_;
+    delivery.bytes.push_back(byte.value);
+    ++transmission.delivered;
+  }
+  if (connected_ && !delivery.bytes.empty())
+  {
+    output_.push_back(std::move(delivery));
+  }
+}
+
+std::vector<Delivery> SimulatedLine::takeOutput(TimePoint now)
+{
+  std::vector<Delivery> output;
+  output.swap(output_);
+  if (!output.empty())
+  {
+    last_seen_ = std::max(last_seen_, now);
+  }
+  return output;
+}
+
+Bytes SimulatedLine::valuesOf(const Transmission& transmission)
+{
+  Bytes bytes;
+  bytes.reserve(transmission.bytes.size());
+  for (const WireByte& byte : transmission.bytes)
+  {
+    bytes.push_back(byte.value);
+  }
+  return bytes;
+}
+
+bool SimulatedLine::wholeForAny(const Bytes& frame) const
+{
+  return std::any_of(drives_.begin(), drives_.end(),
+                     [&frame](const SimulatedDrive* drive) { return drive->isWholeFrame(frame); });
+}
+
+bool SimulatedLine::owes(const SimulatedDrive* drive) const
+{
+  return std::any_of(owed_.begin(), owed_.end(), [drive](const Owed& owed) { return owed.drive == drive; }) ||
+         std::any_of(live_.begin(), live_.end(), [drive](const Transmission& one) { return one.drive == drive; });
+}
+
+/// @param[in,out] bytes what was sent; the frame that the drives make of it
+/// @return false when they wait for more
+bool SimulatedLine::takeFrame(Bytes& bytes)
+{
+  if (options_.settings.protocol == Protocol::ModbusRtu)
+  {
+    return true;
+  }
+  unfinished_.insert(unfinished_.end(), bytes.begin(), bytes.end());
+  const std::optional<Bytes> frame = findCompowayFrame(unfinished_);
+  if (frame)
+  {
+    bytes = *frame;
+  }
+  const auto start = std::find(unfinished_.rbegin(), unfinished_.rend(), COMPOWAY_STX);
+  if (frame || start == unfinished_.rend() || unfinished_.size() > LONGEST_UNFINISHED)
+  {
+    unfinished_.clear();
+  }
+  return frame.has_value();
+}
+
+void SimulatedLine::finishRequest(Transmission& transmission)
+{
+  if (transmission.served || transmission.bytes.empty())
+  {
+    return;
+  }
+  transmission.served = true;
+  counters_.requests += transmission.source == Source::Master ? 1 : 0;
+  Bytes frame = valuesOf(transmission);
+  std::string remark;
+  if (silent_)
+  {
+    remark = "lost: line cut";
+  }
+  else if (!takeFrame(frame))
+  {
+    remark = "unfinished";
+  }
+  else if ((transmission.early || transmission.joined) && options_.gap == GapRule::Enforce)
+  {
+    remark = "lost: gap";
+    ++counters_.lost_gap;
+    for (SimulatedDrive* drive : drives_)
+    {
+      if (drive->addressedBy(frame))
+      {
+        drive->countLostToGap();
+      }
+    }
+  }
+  else
+  {
+    serve(transmission, frame, endOf(transmission) + end_, remark);
+  }
+  report(transmission, remark);
+}
+
+void SimulatedLine::serve(const Transmission& transmission, const Bytes& frame, TimePoint time, std::string& remark)
+{
+  counters_.early += transmission.early ? 1 : 0;
+  remark = transmission.early ? "early" : "";
+  if (!wholeForAny(frame))
+  {
+    remark = transmission.collided ? "damaged: collision" : "damaged";
+    ++counters_.damaged;
+  }
+  bool known = false;
+  for (SimulatedDrive* drive : drives_)
+  {
+    if (!drive->addressedBy(frame))
+    {
+      continue;
+    }
+    known = true;
+    if (transmission.early)
+    {
+      drive->countEarly();
+    }
+    if (owes(drive))
+    {
+      drive->countLostToBusy();
+      remark = "lost: busy with an earlier one";
+      continue;
+    }
+    const std::uint64_t unheard = drive->counters().unheard;
+    const std::optional<Answer> answer = drive->handle(frame, time);
+    if (answer)
+    {
+      owed_.push_back({ time + answer->delay, drive, answer->bytes });
+    }
+    else if (drive->counters().unheard != unheard)
+    {
+      remark = drive->understandsLine() ? "lost: " + drive->name() + " does not listen"
+                                        : "garbage to " + drive->name() + ": sent with " + options_.settings.text();
+    }
+  }
+  if (!known && remark.empty())
+  {
+    remark = "no such station";
+  }
+}
+
+void SimulatedLine::finishReply(Transmission& transmission)
+{
+  const bool reply = transmission.source == Source::Drive;
+  counters_.replies += reply ? 1 : 0;
+  report(transmission, transmission.collided ? "damaged: collision" : (reply ? "" : "noise"));
+}
+
+void SimulatedLine::report(const Transmission& transmission, const std::string& remark)
+{
+  if (observer_)
+  {
+    FrameRecord record;
+    record.time = transmission.bytes.front().start;
+    record.source = transmission.source;
+    record.drive = transmission.drive != nullptr ? transmission.drive->name() : "";
+    record.bytes = valuesOf(transmission);
+    record.station = stationOf(record.bytes, options_.settings.protocol);
+    record.remark = remark;
+    observer_(record);
+  }
+}
+}  // namespace simulation
+}  // namespace inverter_bus

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+// What the words of one inverter mean together (contract, section 4).
+
+#include "bus/inverter/inverter.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bus/link/own_exceptions.h"
+#include "support/bus_fixture.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+class Mx2Inverter : public testing::Test
+{
+protected:
+  /// One refresh with these coils; the registers say 0 Hz, 0 A, stopped, the newest trip is E12.
+  Judgement status(const std::string& coils)
+  {
+    bool more = true;
+    while (more)
+    {
+      const drive::ReadBlock& block = inverter_.refresh.next(at(time_));
+      const std::string request = printed(mx2_.read(1, block));
+      const int sent_at = time_;
+      time_ += 10;
+      more = inverter_.refresh.received(reply(answerTo(request, coils), at(time_), at(sent_at)));
+    }
+    EXPECT_TRUE(inverter_.refresh.takeComplete());
+    return inverter_.judge(at(time_));
+  }
+
+  /// One refresh in which the drive refuses every read: busy.
+  Judgement busyStatus()
+  {
+    bool more = true;
+    for (int reads = 0; more && reads < 100; ++reads)
+    {
+      const drive::ReadBlock& block = inverter_.refresh.next(at(time_));
+      const std::uint8_t function = block.space == drive::Space::Coil ? 0x81 : 0x83;
+      time_ += 10;
+      more = inverter_.refresh.refused(exception(function, 0x06, at(time_)));
+    }
+    return inverter_.judge(at(time_));
+  }
+
+  static std::string answerTo(const std::string& request, const std::string& coils)
+  {
+    if (request == "01 01 00 00 00 18")
+    {
+      return coils;
+    }
+    if (request == "01 03 10 00 00 04")
+    {
+      return "03 08 00 00 00 00 00 00 00 00";
+    }
+    if (request == "01 03 10 0F 00 0A")
+    {
+      return "03 14 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00";
+    }
+    return "03 02 00 0C";
+  }
+
+  const InverterConfig config_ = inverterConfig();
+  const drive::Drive mx2_ = shipped("omron_mx2");
+  Inverter inverter_{ 0, config_, mx2_, 3, 1 };
+  int time_ = 0;
+};
+
+const std::string AT_REST = "01 03 00 00 01";
+const std::string TRIPPED = "01 03 00 00 81";
+const std::string LEFTOVER_RUN = "01 03 01 40 05";
+
+TEST_F(Mx2Inverter, newTripAsksForAStopAtOnceAndOnce)
+{
+  status(AT_REST);
+  const Judgement judgement = status(TRIPPED);
+  EXPECT_TRUE(judgement.tripped);
+  EXPECT_THAT(judgement.stop_reason, testing::HasSubstr("E12"));
+  EXPECT_TRUE(inverter_.interlock.isFaulted());
+  EXPECT_FALSE(status(TRIPPED).tripped);
+}
+
+TEST_F(Mx2Inverter, leftoverRunAtTheFirstStatusIsCleared)
+{
+  EXPECT_FALSE(status(LEFTOVER_RUN).stop_reason.empty());
+}
+
+TEST_F(Mx2Inverter, driveAtRestGivesNoReasonToStop)
+{
+  EXPECT_TRUE(status(AT_REST).stop_reason.empty());
+  EXPECT_TRUE(status(AT_REST).stop_reason.empty());
+}
+
+TEST_F(Mx2Inverter, statusThatCannotTellOfTheTripDoesNotLiftTheLock)
+{
+  status(AT_REST);
+  status(TRIPPED);
+  ASSERT_TRUE(inverter_.interlock.isFaulted());
+  busyStatus();
+  EXPECT_TRUE(inverter_.interlock.isFaulted()) << "not known is not healthy";
+}
+
+TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
+{
+  status(AT_REST);
+  busyStatus();
+  time_ += 1000;
+  std::string request;
+  for (int reads = 0; reads < 6 && request != "01 01 00 00 00 18"; ++reads)
+  {
+    const drive::ReadBlock& block = inverter_.refresh.next(at(time_));
+    request = printed(mx2_.read(1, block));
+    inverter_.refresh.failed();
+  }
+  EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
+}
+TEST(Loopback, OneMissIsEnoughOverTcp)
+{
+  LoopbackKnowledge over_tcp(1);
+  EXPECT_TRUE(over_tcp.usable());
+  over_tcp.note(wire::Outcome::Timeout);
+  EXPECT_FALSE(over_tcp.usable());
+}
+
+TEST(Loopback, ADriveThatAnswersNothingAtAllIsNotTakenForOneWithoutIt)
+{
+  LoopbackKnowledge loopback(3);
+  for (int tries = 0; tries < 10; ++tries)
+  {
+    loopback.note(wire::Outcome::Timeout);
+  }
+  EXPECT_TRUE(loopback.usable());
+}
+
+TEST(Loopback, ADriveThatIsSilentOnItAloneIsNotAskedAgainAndAgain)
+{
+  LoopbackKnowledge loopback(3);
+  for (int tries = 0; tries < 3; ++tries)
+  {
+    EXPECT_TRUE(loopback.usable());
+    loopback.note(wire::Outcome::Timeout);
+    loopback.otherAnswered();
+  }
+  EXPECT_FALSE(loopback.usable());
+  loopback.tryAgain();
+  EXPECT_TRUE(loopback.usable()) << "another drive may stand there after a return";
+}
+
+TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
+{
+  LoopbackKnowledge worked(3);
+  worked.note(wire::Outcome::Ok);
+  for (int tries = 0; tries < 10; ++tries)
+  {
+    worked.note(wire::Outcome::Timeout);
+    worked.otherAnswered();
+  }
+  EXPECT_TRUE(worked.usable());
+  LoopbackKnowledge refused(3);
+  refused.note(wire::Outcome::Exception);
+  EXPECT_FALSE(refused.usable());
+}
+/// An MX2 behind a Modbus TCP gateway.
+class Mx2BehindAGateway : public testing::Test
+{
+protected:
+  static InverterConfig config()
+  {
+    InverterConfig config = inverterConfig();
+    config.modbus_tcp = true;
+    return config;
+  }
+
+  bool isOwn(unsigned code) const
+  {
+    return inverter_.prepared(wire::Request()).own_exceptions[code];
+  }
+
+  const InverterConfig config_ = config();
+  drive::Drive mx2_ = shipped("omron_mx2");
+  Inverter inverter_{ 0, config_, mx2_, 3, 1 };
+};
+
+TEST_F(Mx2BehindAGateway, whatItsProfileListsIsItsOwnAndAllElseTheGateways)
+{
+  for (unsigned code = 1; code < 256; ++code)
+  {
+    const bool listed = code <= 3 || (code >= 0x21 && code <= 0x23) || code == 0x31 || code == 0x32;
+    EXPECT_EQ(listed, isOwn(code)) << code;
+  }
+}
+
+/// Frames at connect of a VF-S15 whose parameters are all 0.
+std::string connectFunctions(const InverterConfig& config)
+{
+  const drive::Drive drive = shipped("toshiba_vfs15");
+  Inverter inverter(0, config, drive, 3, 1);
+  std::string functions;
+  for (int frame = 0; frame < 50 && inverter.connectDue(at(1)); ++frame)
+  {
+    const wire::Request request = inverter.settings.next();
+    functions += std::to_string(request.pdu[0]) + " ";
+    wire::Reply reply;
+    reply.outcome = wire::Outcome::Ok;
+    const std::uint8_t identity = request.pdu[1] == 0xFB && request.pdu[2] == 0x07 ? 224 : 0;
+    reply.pdu = request.pdu[0] == 3 ? wire::Bytes{ 3, 2, 0, identity } : request.pdu;
+    reply.finished_at = at(0);
+    inverter.settings.done(reply);
+  }
+  return functions;
+}
+
+TEST(AnOwnPort, isNotWrittenToBeforeItsFirstStatus)
+{
+  InverterConfig config = inverterConfig();
+  EXPECT_THAT(connectFunctions(config), testing::HasSubstr("6 ")) << "on a serial line the driver sets its marker";
+  config.modbus_tcp = true;
+  config.node = 255;
+  EXPECT_THAT(connectFunctions(config), testing::Not(testing::HasSubstr("6 ")));
+}
+
+TEST(Mx2OnAWire, isAskedNothingOfTheKind)
+{
+  const InverterConfig config = inverterConfig();
+  const drive::Drive mx2 = shipped("omron_mx2");
+  const Inverter inverter(0, config, mx2, 3, 1);
+  EXPECT_EQ(wire::everyExceptionOfADrive(), inverter.prepared(wire::Request()).own_exceptions);
+}
+
+TEST_F(Mx2BehindAGateway, theGatewaysCodeIsShown)
+{
+  wire::Reply reply = lost();
+  reply.gateway_code = 0xE0;
+  for (int i = 0; i < 3; ++i)
+  {
+    inverter_.noteExchange(reply);
+    inverter_.failed(at(0), reply.error_id);
+  }
+  EXPECT_EQ("no reply in time (the gateway answered with exception E0H)", inverter_.status(at(0)).error_text);
+  inverter_.noteExchange(lost());
+  inverter_.failed(at(0), 0x0205);
+  EXPECT_EQ("no reply in time", inverter_.status(at(0)).error_text);
+}
+
+TEST(Vfs11BehindAGateway, refusesWith04OnlyWhileItSendsData)
+{
+  InverterConfig config = inverterConfig();
+  config.modbus_tcp = true;
+  const drive::Drive vfs11 = shipped("toshiba_vfs11");
+  Inverter inverter(0, config, vfs11, 3, 1);
+  const auto own = [&inverter] { return inverter.prepared(wire::Request()).own_exceptions[4]; };
+  EXPECT_FALSE(own()) << "it has never sent any";
+  inverter.refresh.next(at(0));
+  const wire::Reply data = reply("03 02 00 00", at(10), at(0));
+  inverter.noteExchange(data);
+  inverter.noteStatus(data, true);
+  EXPECT_TRUE(own());
+  inverter.noteExchange(exception(0x86, 4));
+  inverter.noteExchange(lost());
+  EXPECT_TRUE(own());
+  inverter.noteExchange(exception(0x86, 4));
+  EXPECT_FALSE(own()) << "three exchanges without data";
+}
+
+TEST(OwnExceptions, commonCodesUnlessTheProfileListsOthers)
+{
+  const wire::ExceptionCodes common = ownExceptions({}, true);
+  EXPECT_EQ(wire::ExceptionCodes().set(1).set(2).set(3), common);
+  EXPECT_EQ(wire::ExceptionCodes().set(2).set(6), ownExceptions({ { 2, "" }, { 6, "" } }, true));
+  EXPECT_EQ(wire::ExceptionCodes(), ownExceptions({ { 0x0A, "" }, { 0x0B, "" } }, true)) << "never a drive's";
+  EXPECT_FALSE(ownExceptions({ { 4, "" } }, false)[4]);
+  EXPECT_TRUE(ownExceptions({ { 4, "" } }, true)[4]);
+}
+}  // namespace
+}  // namespace bus
+}  // namespace inverter_bus

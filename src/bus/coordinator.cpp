@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -52,7 +52,7 @@ void Coordinator::noteRunning(TimePoint now)
     return;
   }
   bus_.outbox.log(Level::Warn,
-                  "this node did not run for " + wire::shownDuration(frozen) +
+                  "this node did not run for " + util::durationText(frozen) +
                       ": it was stopped, or its machine is overloaded; nothing was sent meanwhile, no stop either");
   for (const auto& inverter : bus_.inverters)
   {

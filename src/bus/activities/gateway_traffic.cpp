@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -84,7 +84,7 @@ void GatewayTraffic::tell()
     told_of_gateway_ = true;
     bus_.outbox.log(Level::Warn, "port " + bus_.configuration.bus.port +
                                      ": requests to a silent station are left unanswered: from now on " +
-                                     wire::shownDuration(bus_.gateway.wait()) +
+                                     util::durationText(bus_.gateway.wait()) +
                                      " is waited for instead of gateway_timeout");
   }
 }
@@ -135,8 +135,8 @@ void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
     const std::string& name = neighbour->config.name;
     bus_.outbox.log(Level::Warn,
                     inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
-                        wire::shownDuration(bus_.gateway.block()) + ", longer than the time-out of " + name +
-                        " itself, which runs (" + wire::shownDuration(*neighbour->settings.driveTimeout()) +
+                        util::durationText(bus_.gateway.block()) + ", longer than the time-out of " + name +
+                        " itself, which runs (" + util::durationText(*neighbour->settings.driveTimeout()) +
                         "): " + name + " may trip or stop by that; shorten the gateway's time-out");
   }
 }
@@ -203,7 +203,7 @@ std::string GatewayTraffic::returnText() const
   }
   const auto offline = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
                                      [](const auto& inverter) { return inverter->link.offline(); });
-  return wire::shownDuration(Budget::longestReturn(block(), static_cast<std::size_t>(offline)));
+  return util::durationText(Budget::longestReturn(block(), static_cast<std::size_t>(offline)));
 }
 
 std::optional<Finding> GatewayTraffic::finding() const
@@ -222,10 +222,10 @@ std::optional<Finding> GatewayTraffic::finding() const
                     "that it says so within response_timeout" };
   }
   return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
-                                   wire::shownDuration(bus_.gateway.block()) +
+                                   util::durationText(bus_.gateway.block()) +
                                    ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
                                    "(1 + repeats) below response_timeout (" +
-                                   wire::shownDuration(allowed) + ")" };
+                                   util::durationText(allowed) + ")" };
 }
 
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.

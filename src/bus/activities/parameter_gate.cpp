@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "inverter_bus/bus/types.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -83,7 +83,7 @@ WriteVerdict checkWrite(const drive::Drive& drive, const std::string& name, doub
   if (known == profile.parameters.end())
   {
     return refusal(ERROR_OUT_OF_RANGE,
-                   "'" + wire::shown(name) + "' is no parameter of " + profile.name + " that can be written");
+                   "'" + util::printable(name) + "' is no parameter of " + profile.name + " that can be written");
   }
   drive::Encoded encoded;
   if (const auto parameter = drive.findParameter(name, true))
@@ -132,9 +132,9 @@ WriteVerdict whyNotReadable(const drive::Drive& drive, const std::string& name)
   if (!any)
   {
     return refusal(ERROR_NOT_ARMED, "the profile " + profile.name + " knows no parameter's place: give '" +
-                                        wire::shown(name) + "' under overrides");
+                                        util::printable(name) + "' under overrides");
   }
-  return refusal(ERROR_OUT_OF_RANGE, "'" + wire::shown(name) + "' is no parameter of " + profile.name +
+  return refusal(ERROR_OUT_OF_RANGE, "'" + util::printable(name) + "' is no parameter of " + profile.name +
                                          "; use the drive's own code, or 0x and the number printed in its manual");
 }
 }  // namespace bus

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/activities/reports.h"
 
-#include <cstdio>
 #include <string>
 
 #include "bus/report/inverter_report.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -16,13 +16,6 @@ namespace
 constexpr double STATUS_PERIOD_OFFLINE_S = 0.5;
 constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
-
-std::string rounded(double value, const char* format)
-{
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 }  // namespace
 
 Reports::Reports(BusState& bus, const GatewayTraffic& traffic, const Stops& stops, const PortWatch& port)
@@ -160,20 +153,20 @@ void Reports::addFindings(TimePoint now, Report& report) const
 void Reports::addValues(Report& report) const
 {
   report.values.emplace_back("port", bus_.configuration.bus.port);
-  report.values.emplace_back("cycle time", rounded(report.bus.cycle_time * 1e3, "%.1f ms"));
-  report.values.emplace_back("computed cycle", rounded(toSeconds(bus_.budget.cycle) * 1e3, "%.1f ms"));
-  report.values.emplace_back("utilization", rounded(report.bus.utilization * 100.0, "%.0f %%"));
-  report.values.emplace_back("worst stop latency, computed", rounded(toSeconds(traffic_.worstStop()) * 1e3, "%.1f ms"));
-  report.values.emplace_back("worst stop latency, measured", rounded(report.bus.stop_latency_max * 1e3, "%.1f ms"));
+  report.values.emplace_back("cycle time", util::fixedText(report.bus.cycle_time * 1e3, 1) + " ms");
+  report.values.emplace_back("computed cycle", util::millisecondsText(bus_.budget.cycle));
+  report.values.emplace_back("utilization", util::fixedText(report.bus.utilization * 100.0, 0) + " %");
+  report.values.emplace_back("worst stop latency, computed", util::millisecondsText(traffic_.worstStop()));
+  report.values.emplace_back("worst stop latency, measured",
+                             util::fixedText(report.bus.stop_latency_max * 1e3, 1) + " ms");
   if (!bus_.configuration.bus.gateway)
   {
     report.values.emplace_back("adapter latency", adapter_.text());
   }
-  report.values.emplace_back("longest pause in a reply", rounded(toSeconds(bus_.line.patience()) * 1e3, "%.1f ms"));
+  report.values.emplace_back("longest pause in a reply", util::millisecondsText(bus_.line.patience()));
   if (bus_.gateway.active())
   {
-    report.values.emplace_back("gateway kept by a silent station",
-                               rounded(toSeconds(bus_.gateway.block()) * 1e3, "%.0f ms"));
+    report.values.emplace_back("gateway kept by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
     report.values.emplace_back("offline inverter back within", traffic_.returnText());
   }
   report.values.emplace_back("local echo", bus_.line_watch.echoFound() ? "removed" : "none");

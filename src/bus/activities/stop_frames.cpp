@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -163,7 +163,7 @@ void Stops::noteLatency(Duration latency)
   if (latency >
       bus_.budget.longest_exchange + turns_.longestReplyDelay() + bus_.line.timing().characters(64) + in_gateway)
   {
-    bus_.outbox.trace("stop took " + wire::shownDuration(latency) + " to the wire");
+    bus_.outbox.trace("stop took " + util::durationText(latency) + " to the wire");
   }
 }
 }  // namespace bus

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -120,8 +120,8 @@ std::uint16_t Velocities::judgeOne(TimePoint now, std::size_t index, const Publi
   }
   else if (judged.error_id == ERROR_LOCKED && inverter.link.known() && !inverter.interlock.locked(now))
   {
-    judged.text =
-        "locked for " + wire::shown(publisher.name) + ", which has neither sent 0 nor been silent since the last stop";
+    judged.text = "locked for " + util::printable(publisher.name) +
+                  ", which has neither sent 0 nor been silent since the last stop";
   }
   return judged.error_id;
 }

@@ -4,20 +4,12 @@
 
 #include <algorithm>
 
+#include "util/text.h"
+
 namespace inverter_bus
 {
 namespace bus
 {
-std::string listed(const std::vector<int>& codes)
-{
-  std::string text;
-  for (const int code : codes)
-  {
-    text += (text.empty() ? "" : ", ") + std::to_string(code);
-  }
-  return text;
-}
-
 BlockTransfer::BlockTransfer(const drive::Drive& drive, const InverterConfig& config) : drive_(drive), config_(config)
 {
 }
@@ -97,9 +89,9 @@ std::string BlockTransfer::whyNot(const BlockSlots& slots) const
   {
     return "block read is selected but not in effect: direct reads are used; switch the drive off and on";
   }
-  return "block read and write are not used, since the drive has selected " + listed(slots.write) + " and " +
-         listed(slots.read) + " instead of " + listed(wantedWriteCodes()) + " and " + listed(config_.block_read) +
-         "; direct reads are used; set the drive, or configure_block: true";
+  return "block read and write are not used, since the drive has selected " + util::joined(slots.write) + " and " +
+         util::joined(slots.read) + " instead of " + util::joined(wantedWriteCodes()) + " and " +
+         util::joined(config_.block_read) + "; direct reads are used; set the drive, or configure_block: true";
 }
 
 std::vector<int> BlockTransfer::wantedWriteCodes() const

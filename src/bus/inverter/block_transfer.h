@@ -51,9 +51,6 @@ private:
   std::string dropped_;
   bool configured_ = false;
 };
-
-/// "1, 3": codes for users.
-std::string listed(const std::vector<int>& codes);
 }  // namespace bus
 }  // namespace inverter_bus
 

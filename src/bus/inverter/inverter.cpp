@@ -15,13 +15,13 @@ namespace
 // Share of the drive's own time-out after which it is served whatever else waits.
 constexpr double TIMEOUT_SHARE = 0.8;
 constexpr double CONNECT_PAUSE_S = 0.5;
+
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
 {
   return error_id != 0 && error_id != wire::ERROR_TIMEOUT && error_id != wire::ERROR_DAMAGED &&
          error_id != wire::ERROR_PORT_LOST;
 }
-
 }  // namespace
 
 Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive::Drive& drive, int offline_after,

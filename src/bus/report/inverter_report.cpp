@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/report/inverter_report.h"
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -63,7 +63,7 @@ std::string offlineText(const Inverter& inverter, TimePoint now)
            "), since the port is not open: what to do about it is told of the bus";
   }
   return "offline (" + errorIdText(link.error()) + " " + offlineReason(inverter) + "; last answer " +
-         (link.lastAnswer() ? wire::shownDuration(now - *link.lastAnswer()) + " ago)" : "never)") + "; " +
+         (link.lastAnswer() ? util::durationText(now - *link.lastAnswer()) + " ago)" : "never)") + "; " +
          inverter.record.advice();
 }
 
@@ -184,7 +184,7 @@ std::vector<Finding> findingsOf(const Inverter& inverter, TimePoint now)
   }
   if (inverter.link.latestReply() > Duration::zero())
   {
-    warn("a reply came " + wire::shownDuration(inverter.link.latestReply()) +
+    warn("a reply came " + util::durationText(inverter.link.latestReply()) +
          " after its request; a response_timeout above that "
          "would have caught it");
   }
@@ -204,18 +204,19 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   values.emplace_back("drive", profile.name);
   values.emplace_back("model", profile.title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", wire::shownDuration(inverter.link.slowestReply()));
+                      refresh.hasStamp() ? util::durationText(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", util::durationText(inverter.link.slowestReply()));
   values.emplace_back("returns", std::to_string(inverter.link.returns()));
   values.emplace_back("locked", inverter.interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", wire::shownDuration(inverter.settings.replyDelay()));
+  values.emplace_back("own reply delay", util::durationText(inverter.settings.replyDelay()));
   if (profile.writes == drive::Writes::Eeprom || inverter.drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(inverter.eepromWrites()));
   }
   if (profile.block)
   {
-    values.emplace_back("block read", refresh.block() ? "in use: " + listed(inverter.config.block_read) : "not used");
+    values.emplace_back("block read",
+                        refresh.block() ? "in use: " + util::joined(inverter.config.block_read) : "not used");
   }
   for (const auto& value : refresh.chosenValues())
   {
@@ -232,8 +233,7 @@ std::string onlineText(const Inverter& inverter)
 {
   const drive::Drive& drive = inverter.drive;
   const bool moves = drive.sequence("forward") != nullptr || drive.sequence("reverse") != nullptr;
-  return "online; locked until it is sent 0, or nothing for " +
-         wire::shownDuration(inverter.interlock.silenceNeeded()) +
+  return "online; locked until it is sent 0, or nothing for " + util::durationText(inverter.interlock.silenceNeeded()) +
          (moves ? "" : "; it gets no velocity, see /diagnostics");
 }
 

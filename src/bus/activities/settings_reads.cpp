@@ -49,7 +49,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
 void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)
 {
   const auto wanted =
-      bus_.shutting_down ? std::vector<std::pair<std::string, std::uint32_t>>() : inverter.blockToConfigure();
+      bus_.shutting_down ? std::vector<std::pair<std::string, std::uint32_t>>() : inverter.takeBlockWrites();
   if (wanted.empty())
   {
     return;

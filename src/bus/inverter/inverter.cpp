@@ -142,7 +142,7 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
   refresh.useBlock(block_transfer.read(settings.blockSlots()));
 }
 
-std::vector<std::pair<std::string, std::uint32_t>> Inverter::blockToConfigure()
+std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeBlockWrites()
 {
   const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
                        !refresh.fresh().running.value_or(true);

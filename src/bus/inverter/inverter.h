@@ -93,8 +93,8 @@ public:
   bool connectDue(TimePoint now) const;
   /// After each exchange for its settings.
   void settled(TimePoint now, const wire::Reply& reply);
-  /// Parameters and values that make the block read and write fit, empty where nothing is to be written (any more).
-  std::vector<std::pair<std::string, std::uint32_t>> blockToConfigure();
+  /// Parameters and raw values that make the block read and write fit; once, and empty where nothing is to be written now.
+  std::vector<std::pair<std::string, std::uint32_t>> takeBlockWrites();
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// A parameter was written through this node.

@@ -199,7 +199,7 @@ class Readme(unittest.TestCase):
         self.assertEqual(documented, found)
 
     def testBoundsOfServicesAreThoseOfTheCode(self):
-        bounds = members(read('include/inverter_bus/bus/bus.h'), 'ServiceBounds')
+        bounds = members(read('include/inverter_bus/bus/types.h'), 'ServiceBounds')
         for name, _kind, bound, _ in table(self.readme, '## Services'):
             service = name.split('/')[-1].lstrip('~')
             if service != 'dump_trace':

@@ -12,8 +12,8 @@
 
 #include "inverter_bus/wire/request.h"
 #include "ros/status_conversion.h"
-#include "util/text.h"
 #include "util/steady_event.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {

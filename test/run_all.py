@@ -192,7 +192,7 @@ def ros_programs(build):
                       environment={'ROS_TEST_RESULTS_DIR': results, 'ROS_HOME': home, 'ROS_IP': '127.0.0.1'})
 
 
-def lint_programs(build):
+def lint_programs(build, whole=False):
     sources = [path for pattern in ('include/**/*.h', 'src/**/*.h', 'src/**/*.cpp', 'test/**/*.h', 'test/**/*.cpp',
                                     'benchmark/**/*.h', 'benchmark/**/*.cpp', 'fuzz/**/*.h', 'fuzz/**/*.cpp')
                for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True))]
@@ -207,12 +207,16 @@ def lint_programs(build):
         yield Program('lint', 'catkin_lint', ['catkin_lint', '--offline', '--strict', '-W1'] +
                       [word for name in ignored for word in ('--ignore', name)] + [ROOT])
     if shutil.which('shellcheck'):
-        scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/install_dependencies', 'scripts/common.sh',
-                   '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
+        scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/benchmark', 'scripts/install_dependencies',
+                   'scripts/common.sh', '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield python_program('lint', 'test/contract_test.py', build)
     yield python_program('lint', 'test/steady_waits_test.py', build)
+    # As many processes as cores; only what differs from the main branch, or all.
+    yield Program('lint', 'clang_tidy', [sys.executable, os.path.join(ROOT, 'test', 'tidy.py'), '--build', build] +
+                  (['--whole'] if whole else []), time_limit=3600.0)
+    yield python_program('lint', 'test/tidy_test.py', build)
     yield Program('lint', 'sizes', [sys.executable, os.path.join(ROOT, 'test', 'sizes.py')])
     yield python_program('lint', 'test/sizes_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])
@@ -225,7 +229,7 @@ def python_program(kind, path, build, time_limit=120.0):
 
 
 def bus_fuzz_programs(build, seeds, processes=2):
-    """The whole bus in virtual time (fuzz/bus_fuzz*): always the same seeds."""
+    """The whole bus in virtual time (fuzz/bus): always the same seeds."""
     program = os.path.join(build, 'devel', 'lib', 'inverter_bus', 'bus_fuzz')
     each = seeds // processes
     for first in range(1, seeds + 1, each):
@@ -293,11 +297,12 @@ def main():
     parser.add_argument('--build', required=True)
     parser.add_argument('--only', choices=['unit', 'fuzz', 'ros', 'lint'])
     parser.add_argument('--match', default='')
+    parser.add_argument('--whole', action='store_true', help='clang-tidy over all, not only over what differs from main')
     parser.add_argument('--sanitize', choices=['address', 'thread'])
     arguments = parser.parse_args()
     build = os.path.abspath(arguments.build)
 
-    groups = {'lint': lint_programs, 'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs,
+    groups = {'lint': functools.partial(lint_programs, whole=arguments.whole), 'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs,
               'other': other_programs}
     if arguments.only:
         groups = {arguments.only: groups[arguments.only]}

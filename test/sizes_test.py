@@ -277,9 +277,12 @@ class Limits(Tree):
         self.write('include/inverter_bus/bus/long.h', '\n' * 401)
         self.write('src/bus/rules/long.cpp', '\n' * 401)
         self.write('src/busy/long.cpp', '\n' * 501)
+        self.write('fuzz/bus/checks/long.cpp', '\n' * 401)
+        self.write('fuzz/bytes/long.cpp', '\n' * 600)  # has no limit
         self.write('src/wire/function.cpp', '\n\n' + long_function('tooLong', 61))
         self.write('src/wire/class.h', '\n' + a_class('TooMuch', 26, 13))
-        self.assertEqual(['include/inverter_bus/bus/long.h:401: the file has 401 lines, at most 400',
+        self.assertEqual(['fuzz/bus/checks/long.cpp:401: the file has 401 lines, at most 400',
+                          'include/inverter_bus/bus/long.h:401: the file has 401 lines, at most 400',
                           'src/bus/rules/long.cpp:401: the file has 401 lines, at most 400',
                           'src/busy/long.cpp:501: the file has 501 lines, at most 500',
                           'src/wire/class.h:2: class TooMuch has 26 methods, at most 25',
@@ -307,7 +310,7 @@ class Limits(Tree):
         self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp: no longer needed, it is down to 500'],
                          self.findings())
         os.remove(os.path.join(self.root, 'src/wire/long.cpp'))
-        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp: there is no such'], self.findings())
+        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp: does not exist'], self.findings())
 
     def test_an_exception_is_for_one_kind_only(self):
         self.write('src/wire/class.h', 'namespace inverter_bus {\n%s}\n' % a_class('TooMuch', 26, 13))
@@ -328,7 +331,7 @@ class Limits(Tree):
             lines 600 src/wire/other.cpp a reason
         '''))
         wrong = 'not KIND NUMBER NAME REASON, with function, methods, members or file as its kind'
-        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp stands here twice',
+        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp is listed twice',
                           sizes.EXCEPTIONS + ':3: ' + wrong, sizes.EXCEPTIONS + ':4: ' + wrong], self.findings())
 
 

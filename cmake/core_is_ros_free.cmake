@@ -1,5 +1,6 @@
 # Fails when a file of the core includes anything of ROS, or when a room includes one that it may not enter. A room is a
 # folder of src/; the headers of include/inverter_bus/<room> belong to it, too. docs/architecture.md has the picture.
+# Fails as well when test/, fuzz/ and benchmark/ include anything of each other: what they share is in support/.
 
 cmake_minimum_required(VERSION 3.16)
 
@@ -20,7 +21,7 @@ set(wire_port_MUST_NOT line)
 set(bus_configuration_MUST_NOT rules inverter link report activities)
 set(bus_rules_MUST_NOT inverter link report activities)
 set(bus_link_MUST_NOT rules inverter report activities)
-set(bus_report_MUST_NOT rules inverter link activities)
+set(bus_report_MUST_NOT rules link activities)
 set(bus_inverter_MUST_NOT report activities)
 set(simulation_station_MUST_NOT modbus compoway drives line program)
 set(simulation_modbus_MUST_NOT compoway drives line program)
@@ -70,3 +71,31 @@ endforeach()
 if(CHECKED LESS 100)
   message(FATAL_ERROR "Only ${CHECKED} files were looked at: have the folders moved?")
 endif()
+
+function(check_outside FILE PART INCLUDE)
+  if(INCLUDE MATCHES "[<\"](benchmark|fuzz|test)/" AND NOT CMAKE_MATCH_1 STREQUAL PART)
+    message(FATAL_ERROR "${FILE}: ${PART}/ may include nothing of ${CMAKE_MATCH_1}/, only support/: ${INCLUDE}")
+  endif()
+  # An include directory, or the way up, would lead there as well.
+  get_filename_component(FOLDER ${FILE} DIRECTORY)
+  if(INCLUDE MATCHES "[<\"]\\.\\./")
+    message(FATAL_ERROR "${FILE}: includes name a folder from the root: ${INCLUDE}")
+  elseif(INCLUDE MATCHES "\"([^/\"]+)\"")
+    if(NOT EXISTS ${FOLDER}/${CMAKE_MATCH_1})
+      message(FATAL_ERROR "${FILE}: only what is in the same folder may be included without it: ${INCLUDE}")
+    endif()
+  endif()
+endfunction()
+
+foreach(PART support benchmark fuzz test)
+  file(GLOB_RECURSE FILES ${ROOT}/${PART}/*.h ${ROOT}/${PART}/*.cpp)
+  if(NOT FILES)
+    message(FATAL_ERROR "No source was found in ${PART}/: has the folder moved?")
+  endif()
+  foreach(FILE ${FILES})
+    file(STRINGS ${FILE} INCLUDES REGEX "^[ \t]*#[ \t]*include")
+    foreach(INCLUDE ${INCLUDES})
+      check_outside(${FILE} ${PART} "${INCLUDE}")
+    endforeach()
+  endforeach()
+endforeach()

@@ -165,10 +165,19 @@ def report(program, outcome):
             print('         | %s' % re.sub(r'\x1b\[[0-9;]*m|[^\x20-\x7e]', '', line))
 
 
+def unit_test_names():
+    """unit/wire/line_test.cpp and system/alive_test.cpp are the programs wire_line_test and system_alive_test."""
+    for path in glob.glob(os.path.join(ROOT, 'test', 'unit', '*', '*_test.cpp')) + \
+            glob.glob(os.path.join(ROOT, 'test', 'system', '*_test.cpp')):
+        folder, name = os.path.split(os.path.splitext(path)[0])
+        yield os.path.basename(folder) + '_' + name
+
+
 def unit_programs(build):
+    names = set(unit_test_names())
     for path in sorted(glob.glob(os.path.join(build, 'devel', 'lib', 'inverter_bus', '*_test'))):
         name = os.path.basename(path)
-        if not os.path.exists(os.path.join(ROOT, 'test', 'unit', name + '.cpp')):
+        if name not in names:
             continue  # left over in the build from a test that has moved
         results = os.path.join(build, 'results', name)
         yield Program('unit', name, [path, '--gtest_output=xml:%s/%s.xml' % (results, name)], results=results)
@@ -203,6 +212,7 @@ def lint_programs(build, whole=False):
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield python_program('lint', 'test/contract_test.py', build)
+    yield python_program('lint', 'test/steady_waits_test.py', build)
     # As many processes as cores; only what differs from the main branch, or all.
     yield Program('lint', 'clang_tidy', [sys.executable, os.path.join(ROOT, 'test', 'tidy.py'), '--build', build] +
                   (['--whole'] if whole else []), time_limit=3600.0)
@@ -219,7 +229,7 @@ def python_program(kind, path, build, time_limit=120.0):
 
 
 def bus_fuzz_programs(build, seeds, processes=2):
-    """The whole bus in virtual time (fuzz/bus_fuzz*): always the same seeds."""
+    """The whole bus in virtual time (fuzz/bus): always the same seeds."""
     program = os.path.join(build, 'devel', 'lib', 'inverter_bus', 'bus_fuzz')
     each = seeds // processes
     for first in range(1, seeds + 1, each):

@@ -277,9 +277,12 @@ class Limits(Tree):
         self.write('include/inverter_bus/bus/long.h', '\n' * 401)
         self.write('src/bus/rules/long.cpp', '\n' * 401)
         self.write('src/busy/long.cpp', '\n' * 501)
+        self.write('fuzz/bus/checks/long.cpp', '\n' * 401)
+        self.write('fuzz/bytes/long.cpp', '\n' * 600)  # has no limit
         self.write('src/wire/function.cpp', '\n\n' + long_function('tooLong', 61))
         self.write('src/wire/class.h', '\n' + a_class('TooMuch', 26, 13))
-        self.assertEqual(['include/inverter_bus/bus/long.h:401: the file has 401 lines, at most 400',
+        self.assertEqual(['fuzz/bus/checks/long.cpp:401: the file has 401 lines, at most 400',
+                          'include/inverter_bus/bus/long.h:401: the file has 401 lines, at most 400',
                           'src/bus/rules/long.cpp:401: the file has 401 lines, at most 400',
                           'src/busy/long.cpp:501: the file has 501 lines, at most 500',
                           'src/wire/class.h:2: class TooMuch has 26 methods, at most 25',

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bus/link/own_exceptions.h"
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -33,16 +33,6 @@ constexpr double CONNECT_PAUSE_S = 0.5;
 constexpr double COMMAND_SOURCE_PERIOD_S = 5.0;
 // 5 % of 2.7 s: an offline inverter is to be found again within 3 s (contract, rule 3.7).
 constexpr double MOST_PAID_FOR_DATA_S = 0.135;
-
-std::string listed(const std::vector<int>& codes)
-{
-  std::string text;
-  for (const int code : codes)
-  {
-    text += (text.empty() ? "" : ", ") + std::to_string(code);
-  }
-  return text;
-}
 
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
@@ -819,7 +809,7 @@ void Inverter::noteProbed(const wire::Reply& reply)
 
 std::string Inverter::onlineText() const
 {
-  return "online; locked until it is sent 0, or nothing for " + wire::shownDuration(interlock.silenceNeeded()) +
+  return "online; locked until it is sent 0, or nothing for " + util::durationText(interlock.silenceNeeded()) +
          (drive.sequence("forward") == nullptr && drive.sequence("reverse") == nullptr
               ? "; it gets no velocity, see /diagnostics"
               : "");
@@ -835,7 +825,7 @@ std::string Inverter::offlineReason() const
 std::string Inverter::offlineText(TimePoint now) const
 {
   std::string text = "offline (" + errorIdText(exchange_error_) + " " + offlineReason() + "; last answer ";
-  text += ever_answered_ ? wire::shownDuration(now - last_reply_) + " ago)" : "never)";
+  text += ever_answered_ ? util::durationText(now - last_reply_) + " ago)" : "never)";
   return text + (exchange_error_ == wire::ERROR_PORT_LOST ? "" : "; " + record.advice());
 }
 
@@ -913,7 +903,7 @@ std::vector<Finding> Inverter::findings(TimePoint now) const
   }
   if (latest_late_reply_ > Duration::zero())
   {
-    warn("a reply came " + wire::shownDuration(latest_late_reply_) +
+    warn("a reply came " + util::durationText(latest_late_reply_) +
          " after its request; a response_timeout above that "
          "would have caught it");
   }
@@ -954,9 +944,9 @@ std::string Inverter::blockFinding() const
   {
     return "block read is selected but not in effect: direct reads are used; switch the drive off and on";
   }
-  return "block read and write are not used, since the drive has selected " + listed(slots->write) + " and " +
-         listed(slots->read) + " instead of " + listed(wantedWriteCodes()) + " and " + listed(config.block_read) +
-         "; direct reads are used; set the drive, or configure_block: true";
+  return "block read and write are not used, since the drive has selected " + util::joined(slots->write) + " and " +
+         util::joined(slots->read) + " instead of " + util::joined(wantedWriteCodes()) + " and " +
+         util::joined(config.block_read) + "; direct reads are used; set the drive, or configure_block: true";
 }
 
 std::vector<int> Inverter::wantedWriteCodes() const
@@ -976,18 +966,18 @@ std::vector<std::pair<std::string, std::string>> Inverter::values(TimePoint now)
   values.emplace_back("drive", drive.profile().name);
   values.emplace_back("model", drive.profile().title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? wire::shownDuration(now - refresh.stamp()) : std::string("no status yet"));
-  values.emplace_back("slowest reply", wire::shownDuration(slowest_reply_));
+                      refresh.hasStamp() ? util::durationText(now - refresh.stamp()) : std::string("no status yet"));
+  values.emplace_back("slowest reply", util::durationText(slowest_reply_));
   values.emplace_back("returns", std::to_string(returns_));
   values.emplace_back("locked", interlock.locked(now) ? "yes" : "no");
-  values.emplace_back("own reply delay", wire::shownDuration(settings.replyDelay()));
+  values.emplace_back("own reply delay", util::durationText(settings.replyDelay()));
   if (drive.profile().writes == drive::Writes::Eeprom || drive.wears("frequency"))
   {
     values.emplace_back("EEPROM writes by this node", std::to_string(eeprom_writes_));
   }
   if (drive.profile().block)
   {
-    values.emplace_back("block read", refresh.block() ? "in use: " + listed(config.block_read) : "not used");
+    values.emplace_back("block read", refresh.block() ? "in use: " + util::joined(config.block_read) : "not used");
   }
   for (const auto& value : refresh.chosenValues())
   {

@@ -3,7 +3,8 @@
 #include "bus/inverter/liveness.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -21,10 +22,8 @@ constexpr std::uint16_t MODBUS_EXCEPTIONS = 0x8000;
 std::string refusalText(std::uint16_t error_id)
 {
   const bool modbus = error_id >= MODBUS_EXCEPTIONS;
-  char text[64];
-  std::snprintf(text, sizeof text, modbus ? "answers exception %02X to the status" : "answers %04X to the status",
-                modbus ? error_id & 0xFFU : static_cast<unsigned>(error_id));
-  return text;
+  return "answers " + (modbus ? "exception " + util::hexText(error_id & 0xFFU, 2) : util::hexText(error_id, 4)) +
+         " to the status";
 }
 
 std::string share(const std::string& what, unsigned part, unsigned whole)

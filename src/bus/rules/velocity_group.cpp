@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -36,7 +36,7 @@ void complain(VelocityGroup& group, const std::string& name, const char* why)
 {
   if (group.problem.empty())
   {
-    group.problem = "the group names '" + wire::shown(name) + "'" + why;
+    group.problem = "the group names '" + util::printable(name) + "'" + why;
   }
 }
 }  // namespace

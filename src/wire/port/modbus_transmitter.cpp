@@ -22,20 +22,6 @@ constexpr std::size_t CRC_LENGTH = 2;
 /// For a port whose buffer is full: more than any frame of a healthy one.
 constexpr std::chrono::milliseconds WRITE_SLACK{ 50 };
 
-char parityLetter(Parity parity)
-{
-  switch (parity)
-  {
-    case Parity::Even:
-      return 'E';
-    case Parity::Odd:
-      return 'O';
-    case Parity::None:
-      break;
-  }
-  return 'N';
-}
-
 class ModbusTransmitter : public Transmitter
 {
 public:

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_FUZZ_DRIVER_H
+#define INVERTER_BUS_FUZZ_DRIVER_H
+
+#include <memory>
+#include <mutex>
+
+#include "bus/bus_loop.h"
+#include "bus/coordinator.h"
+#include "fuzz/bus/line_watch.h"
+#include "support/virtual_world.h"
+
+namespace inverter_bus
+{
+namespace fuzz
+{
+/// A port that tells the checker of every request before its first byte leaves.
+class WatchedPort : public VirtualPort
+{
+public:
+  WatchedPort(simulation::SimulatedBus& bus, AppointedClock& clock, LineWatch& watch);
+
+  wire::OpenResult open(std::string& error) override;
+  bool send(const wire::Bytes& frame) override;
+  wire::ReceiveResult receive(wire::Bytes& buffer, TimePoint deadline) override;
+
+private:
+  AppointedClock& clock_;
+  LineWatch& watch_;
+};
+
+/// What is tested: the driver's core from its bus loop down to the port.
+struct Driver
+{
+  Driver(const bus::Configuration& configuration, simulation::SimulatedBus& bus, AppointedClock& clock,
+         LineWatch& watch);
+
+  WatchedPort port;
+  std::unique_ptr<wire::Protocol> protocol;
+  wire::Line line;
+  std::mutex mutex;
+  bus::Coordinator coordinator;
+  bus::BusLoop loop;
+
+  /// The node warns that it can't serve this inverter within its communication time-out.
+  bool budgetWarns(TimePoint now, std::size_t index) const;
+};
+}  // namespace fuzz
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_FUZZ_DRIVER_H

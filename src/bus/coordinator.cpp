@@ -161,7 +161,7 @@ void Coordinator::sent(TimePoint now)
   if (!current.resync && current.purpose != Purpose::Broadcast && wears)
   {
     // What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
-    bus_.inverters[current.inverter]->noteEepromWrite();
+    bus_.inverters[current.inverter]->services.eepromWritten();
   }
   activities_.services.sent(current);
   activities_.velocities.sent(current);
@@ -243,7 +243,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
   }
   if (current.request.expects_reply && isAnswered(reply))
   {
-    inverter.answered(reply);
+    inverter.link.answered(reply);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || isAnswered(reply)))

@@ -60,22 +60,6 @@ std::string refusalText(const Inverter& inverter, std::uint16_t error_id)
   return text.empty() ? errorText(error_id) : text;
 }
 
-bool repeat(const BusState& bus, int& tries, const wire::Reply& reply)
-{
-  // A gateway that says that the drive is silent has tried itself.
-  if (isAnswered(reply) || reply.gateway_code != 0)
-  {
-    tries = 0;
-    return false;
-  }
-  if (++tries <= bus.configuration.bus.retries)
-  {
-    return true;
-  }
-  tries = 0;
-  return false;
-}
-
 ServiceBounds serviceBounds(const BusState& bus)
 {
   ServiceBounds bounds;

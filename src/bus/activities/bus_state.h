@@ -76,9 +76,6 @@ bool untested(const Inverter& inverter);
 /// In the drive's own words where it has answered.
 std::string refusalText(const Inverter& inverter, std::uint16_t error_id);
 
-/// Lost or damaged: is it to be repeated? \p tries counts those of one request and begins anew after the last.
-bool repeat(const BusState& bus, int& tries, const wire::Reply& reply);
-
 /// How long each service may take: slow buses and long scan lists get more time; docs/commands.md states how much.
 ServiceBounds serviceBounds(const BusState& bus);
 }  // namespace bus

@@ -72,7 +72,7 @@ void GatewayTraffic::othersFirst(TimePoint free_at, Inverter& inverter)
   const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
   if (!serve_by || *serve_by > free_at + bus_.budget.cycle)
   {
-    inverter.refresh_not_before = free_at + bus_.budget.cycle;
+    inverter.pauses.holdStatus(free_at + bus_.budget.cycle);
   }
 }
 

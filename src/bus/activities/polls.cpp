@@ -11,7 +11,12 @@ namespace inverter_bus
 namespace bus
 {
 Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences)
-  : bus_(bus), turns_(turns), guard_(guard), stops_(stops), absences_(absences)
+  : bus_(bus)
+  , turns_(turns)
+  , guard_(guard)
+  , stops_(stops)
+  , absences_(absences)
+  , repeats_(bus.inverters.size(), Repeats(bus.configuration.bus.retries))
 {
 }
 
@@ -70,7 +75,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   }
   if (isAnswered(reply))
   {
-    inverter.refresh_tries = 0;
+    repeats_[inverter.index].restart();
     if (reply.outcome == wire::Outcome::Ok)
     {
       inverter.liveness.dataRead();
@@ -99,7 +104,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   }
   // One that has lost as many writes as make a drive offline is not asked twice.
   const bool decided = inverter.link.offline() || inverter.liveness.needsRead();
-  if (!decided && repeat(bus_, inverter.refresh_tries, reply))
+  if (!decided && repeats_[inverter.index].again(reply))
   {
     turns_.finish(current, reply, true);
     return;

@@ -3,6 +3,8 @@
 #ifndef INVERTER_BUS_BUS_POLLS_H
 #define INVERTER_BUS_BUS_POLLS_H
 
+#include <vector>
+
 #include "bus/activities/absences.h"
 #include "bus/activities/reply_guard.h"
 
@@ -31,6 +33,8 @@ private:
   const ReplyGuard& guard_;
   Stops& stops_;
   Absences& absences_;
+  /// Of the read at hand, by inverter.
+  std::vector<Repeats> repeats_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

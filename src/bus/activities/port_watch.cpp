@@ -42,7 +42,7 @@ void PortWatch::opened(TimePoint now)
   }
   for (const auto& inverter : bus_.inverters)
   {
-    inverter->refresh_not_before = now;
+    inverter->pauses.holdStatus(now);
     if (!inverter->link.known())
     {
       inverter->liveness.watchFrom(now);

@@ -30,10 +30,28 @@ InFlight Probes::compose(const Pick& pick)
   current.pick = pick;
   current.purpose = Purpose::Probe;
   current.inverter = pick.inverter;
-  current.loopback = inverter.probesByLoopback() && inverter.drive.loopback(inverter.config.node, 0).has_value();
-  current.request = inverter.probe(++bus_.loopback_number, timeout(inverter));
-  ++inverter.probes;
+  current.loopback = byLoopback(inverter) && inverter.drive.loopback(inverter.config.node, 0).has_value();
+  current.request = request(inverter, ++bus_.loopback_number, timeout(inverter));
+  inverter.link.probeSent();
   return current;
+}
+
+bool Probes::byLoopback(const Inverter& inverter) const
+{
+  // Two ways to ask in turn, until it is known that the drive has the loop-back.
+  const bool worth_it = inverter.config.modbus_tcp ? inverter.loopbackUsable() : inverter.loopback.worthATry();
+  return inverter.loopback.proven() || (worth_it && inverter.link.probes() % 2 == 0);
+}
+
+wire::Request Probes::request(const Inverter& inverter, std::uint16_t number, Duration response_timeout) const
+{
+  const drive::Drive& drive = inverter.drive;
+  const std::uint8_t node = inverter.config.node;
+  const auto echo = byLoopback(inverter) ? drive.loopback(node, number) : std::nullopt;
+  const auto& run = drive.runBlock();
+  wire::Request request = inverter.prepared(echo ? *echo : drive.read(node, run ? *run : drive.fastBlocks().front()));
+  request.response_timeout = std::min(request.response_timeout, response_timeout);
+  return request;
 }
 
 void Probes::ended(const InFlight& current, const wire::Reply& reply)
@@ -51,11 +69,11 @@ Duration Probes::timeout(const Inverter& inverter) const
                                   [](const std::unique_ptr<Inverter>& other) { return other->link.silent(); });
   // Staggered by index, so that no round has more than a few full ones.
   const std::size_t every = dead > 1 ? FULL_PROBE_EVERY_OF_MANY : FULL_PROBE_EVERY;
-  if ((inverter.probes + inverter.index) % every == every - 1)
+  if ((inverter.link.probes() + inverter.index) % every == every - 1)
   {
     return full;
   }
-  const wire::Request bare = inverter.probe(0, Duration::zero());
+  const wire::Request bare = request(inverter, 0, Duration::zero());
   const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<long>(dead, 1)));
   const Duration needed = inverter.link.slowestReply() + inverter.link.slowestReply() / 2;
   const Duration least = std::max(needed, seconds(SHORTEST_PROBE_TIMEOUT_S));

@@ -23,6 +23,11 @@ public:
   void lateReply(TimePoint now, const wire::LateReply& late);
 
 private:
+  /// The next one is a loop-back, if the drive's profile has one.
+  bool byLoopback(const Inverter& inverter) const;
+  /// The question that shows whether an offline drive is back.
+  wire::Request request(const Inverter& inverter, std::uint16_t number, Duration response_timeout) const;
+
   BusState& bus_;
   Turns& turns_;
   GatewayTraffic& traffic_;

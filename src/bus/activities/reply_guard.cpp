@@ -57,14 +57,14 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
   else if (current.purpose == Purpose::Setting)
   {
     // The status may have another shape.
-    inverter.setting_not_before = allowed;
+    inverter.pauses.holdSettings(allowed);
   }
   else
   {
     const auto serve_by =
         current.purpose == Purpose::Refresh ? inverter.serveBy(bus_.budget.deadline_margin) : std::nullopt;
     const bool early = serve_by && *serve_by < allowed && spareRead(inverter);
-    inverter.refresh_not_before = early ? std::max(*serve_by, now + std::chrono::milliseconds(1)) : allowed;
+    inverter.pauses.holdStatus(early ? std::max(*serve_by, now + std::chrono::milliseconds(1)) : allowed);
   }
   return false;
 }

@@ -69,7 +69,10 @@ void Services::sent(const InFlight& current)
   {
     const auto* write = dynamic_cast<const WriteParameterJob*>(job->second.job.get());
     Inverter& inverter = *bus_.inverters[current.inverter];
-    inverter.setup_open = inverter.setup_open || (write != nullptr && write->inSetup());
+    if (write != nullptr && write->inSetup())
+    {
+      inverter.services.setupOpened();
+    }
   }
 }
 
@@ -96,7 +99,7 @@ Ending Services::ended(const InFlight& current, const wire::Reply& reply)
       running.job->kind() == CommandKind::ReadParameter || running.job->kind() == CommandKind::ReadFaults;
   // What was under way when the connection was closed may have been carried out (contract, 8.9).
   const bool once = reply.connection_closed && !reads;
-  if (!once && repeat(bus_, running.tries, reply))
+  if (!once && running.repeats.again(reply))
   {
     turns_.finish(current, reply, true);
     return Ending::Nothing;
@@ -124,7 +127,7 @@ void Services::doneStep(TimePoint now, const InFlight& current)
   if (!current.request.expects_reply)
   {
     // It executes without a reply and is deaf for a while: neither a time-out nor an offline drive.
-    inverter.refresh_not_before = now + running.job->pause();
+    inverter.pauses.holdStatus(now + running.job->pause());
   }
 }
 
@@ -134,7 +137,7 @@ void Services::noteEnd(Inverter& inverter, const Job& job, const Answer& result)
   if (const auto* write = dynamic_cast<const WriteParameterJob*>(&job))
   {
     inverter.parameterWritten(write->parameter().name);
-    inverter.setup_open = false;
+    inverter.services.setupLeft();
     if (write->inSetup())
     {
       inverter.settings.leaveSetup();
@@ -194,7 +197,7 @@ void Services::end(CommandId id, const Answer& result)
   noteEnd(*bus_.inverters[found->second.inverter], *found->second.job, result);
   if (found->second.job->kind() == CommandKind::Reset)
   {
-    bus_.inverters[found->second.inverter]->reset_active = false;
+    bus_.inverters[found->second.inverter]->services.resetEnded();
   }
   for (const AnswerCallback& callback : found->second.callbacks)
   {

@@ -12,7 +12,8 @@ namespace inverter_bus
 {
 namespace bus
 {
-Services::Services(BusState& bus, Turns& turns, Stops& stops) : bus_(bus), turns_(turns), stops_(stops)
+Services::Services(BusState& bus, Turns& turns, Stops& stops)
+  : bus_(bus), turns_(turns), stops_(stops), ram_changes_(bus.inverters.size())
 {
 }
 
@@ -48,7 +49,7 @@ void Services::reset(TimePoint now, std::size_t index, AnswerCallback callback)
     bus_.outbox.answer(callback, nothing);
     return;
   }
-  inverter.reset_active = true;
+  inverter.services.resetBegun();
   if (!inverter.drive.tellsRun())
   {
     stops_.request(now, inverter, StopMode::Decelerate, true, "");
@@ -110,7 +111,7 @@ void Services::writeParameter(TimePoint now, std::size_t index, const std::strin
   start(now, index,
         std::make_unique<WriteParameterJob>(inverter.drive, inverter.config.node,
                                             *inverter.drive.findParameter(name, true), verdict.raw, persist,
-                                            inverter.ram_changes),
+                                            ram_changes_[index]),
         serviceBounds(bus_).write_parameter, std::move(callback));
 }
 
@@ -151,10 +152,7 @@ bool Services::refuse(std::size_t index, const AnswerCallback& callback)
 void Services::start(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound, AnswerCallback callback)
 {
   const CommandId id = bus_.next_command++;
-  Running running;
-  running.job = std::move(job);
-  running.inverter = index;
-  running.expires = now + seconds(bound);
+  Running running{ std::move(job), index, now + seconds(bound), {}, Repeats(bus_.configuration.bus.retries) };
   running.callbacks.push_back(std::move(callback));
   jobs_.emplace(id, std::move(running));
   queue(id, now);

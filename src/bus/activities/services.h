@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ private:
     TimePoint expires;
     /// One, or the callers of a reset that was asked for again while it was under way.
     std::vector<AnswerCallback> callbacks;
-    int tries = 0;
+    Repeats repeats;
   };
   bool refuse(std::size_t index, const AnswerCallback& callback);
   bool refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback);
@@ -70,6 +71,8 @@ private:
   Turns& turns_;
   Stops& stops_;
   std::map<CommandId, Running> jobs_;
+  /// By inverter: names of the parameters written to RAM since the last store.
+  std::vector<std::set<std::string>> ram_changes_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

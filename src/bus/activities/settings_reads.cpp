@@ -30,7 +30,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
   Inverter& inverter = *bus_.inverters[current.inverter];
   if (isAnswered(reply))
   {
-    inverter.settings_tries = 0;
+    inverter.setting_repeats.restart();
     inverter.settled(reply.finished_at, reply);
     // Before a status it took the refresh's turn, and gives it back.
     turns_.finish(current, reply, current.pick.what == Pick::What::Refresh);
@@ -38,7 +38,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
     return;
   }
   inverter.settled(reply.finished_at, reply);
-  const bool again = !inverter.link.offline() && repeat(bus_, inverter.settings_tries, reply);
+  const bool again = !inverter.link.offline() && inverter.setting_repeats.again(reply);
   turns_.finish(current, reply, false);
   if (!again)
   {

@@ -43,7 +43,7 @@ std::string inConflict(const Inverter& inverter, std::uint16_t& error_id)
   {
     return "";
   }
-  if (inverter.reset_active)
+  if (inverter.services.resetting())
   {
     error_id = ERROR_LOCKED;
     return "a reset of the drive is under way";
@@ -87,7 +87,7 @@ std::uint16_t lockOf(TimePoint now, const Inverter& inverter, const Publisher& p
 }  // namespace
 
 Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences)
-  : bus_(bus), turns_(turns), traffic_(traffic), stops_(stops), absences_(absences)
+  : bus_(bus), turns_(turns), traffic_(traffic), stops_(stops), absences_(absences), frames_(bus.inverters.size(), 0)
 {
 }
 
@@ -254,7 +254,7 @@ void Velocities::apply(TimePoint now, const VelocityCommand& command, const std:
     if (moves)
     {
       // A unit that is under way goes on counting, whatever comes newly into it.
-      inverter.velocity_frames = bus_.scheduler.velocityWaits(inverter.index) ? inverter.velocity_frames : 0;
+      frames_[inverter.index] = bus_.scheduler.velocityWaits(inverter.index) ? frames_[inverter.index] : 0;
       waiting.inverters.push_back(inverter.index);
     }
   }

@@ -51,6 +51,8 @@ private:
   const GatewayTraffic& traffic_;
   Stops& stops_;
   Absences& absences_;
+  /// By inverter: frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
+  std::vector<unsigned> frames_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -104,7 +104,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
       inverter.settings.commanded();
     }
     inverter.lost_writes.acknowledged();
-    ++inverter.velocity_frames;
+    ++frames_[inverter.index];
     finish(current, reply);
     return;
   }
@@ -192,7 +192,7 @@ void Velocities::finish(const InFlight& current, const wire::Reply& reply)
   Inverter& inverter = *bus_.inverters[current.inverter];
   const bool complete = !inverter.movement.next();
   // A newer target has come during its last frame: it has its own place in the order (contract, 3.6 and 8.1).
-  const bool over = current.write.last || inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  const bool over = current.write.last || frames_[inverter.index] >= MOST_FRAMES_PER_UNIT;
   if (complete)
   {
     inverter.command_error.confirmed();
@@ -204,7 +204,7 @@ void Velocities::finish(const InFlight& current, const wire::Reply& reply)
   turns_.finish(current, reply, !bus_.scheduler.members(current.pick.command).empty());
   if (!complete && over)
   {
-    inverter.velocity_frames = 0;
+    frames_[inverter.index] = 0;
     WaitingCommand waiting;
     waiting.id = bus_.next_command++;
     waiting.inverters = { inverter.index };

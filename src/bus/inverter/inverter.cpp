@@ -14,7 +14,6 @@ namespace
 {
 // Share of the drive's own time-out after which it is served whatever else waits.
 constexpr double TIMEOUT_SHARE = 0.8;
-constexpr double CONNECT_PAUSE_S = 0.5;
 
 /// The drive's own no, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
@@ -41,21 +40,15 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
+  , setting_repeats(retries)
 {
 }
 
 // --- link ------------------------------------------------------------------------------------------------------------
 
-void Inverter::answered(const wire::Reply& reply)
-{
-  link.answered(reply);
-  probes = 0;
-}
-
 Duration Inverter::endTrial(std::uint16_t error_id)
 {
-  refresh_tries = 0;
-  settings_tries = 0;
+  setting_repeats.restart();
   forgetDrive(!isRefusal(error_id));
   return link.endTrial();
 }
@@ -94,7 +87,7 @@ void Inverter::goOffline(std::uint16_t error_id)
   stop.forgetConfirmation();
   movement.drop();
   motion.wentOffline();
-  reset_active = false;
+  services.resetEnded();
   liveness.heard();
   // From now on nothing of it is answered, and that is what users are told.
   lost_writes.lower();
@@ -106,10 +99,9 @@ void Inverter::forgetDrive(bool after_silence)
 {
   evidence.forget();
   motion.forget();
-  setup_open = false;
+  services.setupLeft();
   block_transfer.tryAgain();
-  connect_not_before = TimePoint();
-  setting_not_before = TimePoint();
+  pauses.forget();
   movement.forgetWords();
   refresh.forget();
   if (after_silence)
@@ -136,23 +128,13 @@ bool Inverter::connectDue(TimePoint now) const
 {
   // Nothing but reads goes to a port of the drive's own before it has told its status (contract, 8.8).
   const bool must_wait = config.ownPort() && !link.everKnown() && settings.nextWrites();
-  return !link.silent() && now >= std::max(connect_not_before, setting_not_before) && settings.urgent() && !must_wait;
+  return !link.silent() && pauses.connectAllowed(now) && settings.urgent() && !must_wait;
 }
 
 void Inverter::settled(TimePoint now, const wire::Reply& reply)
 {
   settings.done(reply);
-  if (reply.outcome != wire::Outcome::Ok)
-  {
-    // Not at once again: the status is worth more.
-    connect_not_before = now + seconds(CONNECT_PAUSE_S);
-  }
-  refused_setting_not_before_ = now + settings.pauseBeforeNext();
-  adoptSettings();
-}
-
-void Inverter::adoptSettings()
-{
+  pauses.settingEnded(now, reply.outcome != wire::Outcome::Ok, settings.pauseBeforeNext());
   drive::Ratings ratings = settings.ratings();
   ratings.current = config.rated_current ? config.rated_current : ratings.current;
   ratings.voltage = config.rated_voltage ? config.rated_voltage : ratings.voltage;
@@ -217,7 +199,7 @@ void Inverter::parameterWritten(const std::string& name)
 
 bool Inverter::inSetup() const
 {
-  return setup_open || settings.leavingSetup();
+  return services.setupOpen() || settings.leavingSetup();
 }
 
 bool Inverter::mayRepeatWords(TimePoint now) const
@@ -232,36 +214,9 @@ bool Inverter::mayRun() const
          monitor.output_frequency.value_or(0.0) > 0.0;
 }
 
-void Inverter::noteEepromWrite()
-{
-  ++eeprom_writes_;
-}
-
-std::uint64_t Inverter::eepromWrites() const
-{
-  return eeprom_writes_;
-}
-
-bool Inverter::probesByLoopback() const
-{
-  // Two ways to ask in turn, until it is known that the drive has the loop-back.
-  const bool worth_it = config.modbus_tcp ? loopbackUsable() : loopback.worthATry();
-  return loopback.proven() || (worth_it && probes % 2 == 0);
-}
-
 bool Inverter::loopbackUsable() const
 {
   return loopback.usable() && (link.everKnown() || !config.ownPort());
-}
-
-wire::Request Inverter::probe(std::uint16_t number, Duration response_timeout) const
-{
-  const auto echo = probesByLoopback() ? drive.loopback(config.node, number) : std::nullopt;
-  wire::Request request =
-      echo ? *echo : drive.read(config.node, drive.runBlock() ? *drive.runBlock() : drive.fastBlocks().front());
-  request = prepared(request);
-  request.response_timeout = std::min(request.response_timeout, response_timeout);
-  return request;
 }
 
 // --- judgement -------------------------------------------------------------------------------------------------------
@@ -352,7 +307,7 @@ Obstacles Inverter::obstacles() const
   obstacles.offline = link.offline();
   obstacles.tripped = interlock.isFaulted();
   obstacles.stop_pending = interlock.stopPending();
-  obstacles.reset_active = reset_active;
+  obstacles.reset_active = services.resetting();
   obstacles.in_setup = inSetup();
   obstacles.wrong_drive = settings.identity() != Identity::Right;
   return obstacles;
@@ -371,10 +326,9 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_attempts = stop.pending() ? stop.attempts() : 0;
   view.stop_written = stop.pending() && stop.written();
   view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
-  view.refresh_not_before = refresh_not_before;
-  const bool rested = refused_setting_not_before_ <= now || settings.pauseBeforeNext() == Duration{ 0 };
-  const bool may_ask = refresh_not_before <= now && setting_not_before <= now && rested;
-  view.background = link.known() && !link.offline() && settings.pending() && may_ask;
+  view.refresh_not_before = pauses.statusNotBefore();
+  const bool refused = settings.pauseBeforeNext() > Duration{ 0 };
+  view.background = link.known() && !link.offline() && settings.pending() && pauses.settingsAllowed(now, refused);
   view.serve_by = serveBy(deadline_margin);
   return view;
 }

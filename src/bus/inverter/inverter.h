@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,8 +19,11 @@
 #include "bus/inverter/lost_writes.h"
 #include "bus/inverter/motion_watch.h"
 #include "bus/inverter/movement.h"
+#include "bus/inverter/pauses.h"
 #include "bus/inverter/refresh.h"
+#include "bus/inverter/repeats.h"
 #include "bus/inverter/run_evidence.h"
+#include "bus/inverter/service_state.h"
 #include "bus/inverter/stop_job.h"
 #include "bus/rules/interlock.h"
 #include "bus/rules/scheduler.h"
@@ -49,7 +51,6 @@ public:
   StopJob stop;
   Refresh refresh;
   DriveSettings settings;
-  std::set<std::string> ram_changes;
   LoopbackKnowledge loopback;
   Link link;
   RunEvidence evidence;
@@ -60,10 +61,12 @@ public:
   LinkRecord record;
   LostWrites lost_writes;
   Liveness liveness;
+  Pauses pauses;
+  /// Of the exchange at hand for its settings.
+  Repeats setting_repeats;
+  ServiceState services;
 
   // --- the link -----------------------------------------------------------------------------------------------------
-  /// A valid reply came, of whatever kind.
-  void answered(const wire::Reply& reply);
   /// An exchange failed after its repeats. Returns true if the inverter has just gone offline. Lost writes of command words
   /// alone don't take it offline (contract, 8.1): a read must have been lost among them.
   bool failed(TimePoint now, std::uint16_t error_id, bool write = false);
@@ -82,10 +85,6 @@ public:
   /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
   /// (contract, 8.8).
   bool loopbackUsable() const;
-  /// The next probe() is a loop-back, if the drive's profile has one.
-  bool probesByLoopback() const;
-  /// The question that shows whether an offline drive is back.
-  wire::Request probe(std::uint16_t number, Duration response_timeout) const;
   /// A refresh may repeat the confirmed command words (contract, 4.1).
   bool mayRepeatWords(TimePoint now) const;
 
@@ -100,9 +99,6 @@ public:
   void dropBlock(const std::string& why);
   /// A parameter was written through this node.
   void parameterWritten(const std::string& name);
-  /// The drive's EEPROM has been written once more by this node.
-  void noteEepromWrite();
-  std::uint64_t eepromWrites() const;
 
   // --- status -------------------------------------------------------------------------------------------------------
   /// An exchange ended; a lost one ends all that was proven of RUN.
@@ -126,29 +122,10 @@ public:
   /// What the scheduler must know of it.
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
-  bool reset_active = false;
-  /// Frames of a job have led the drive into its setup area.
-  bool setup_open = false;
-  TimePoint refresh_not_before;
-  TimePoint connect_not_before;
-  /// Its settings are not asked for before that.
-  TimePoint setting_not_before;
-  int refresh_tries = 0;
-  /// Frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
-  unsigned velocity_frames = 0;
-  int settings_tries = 0;
-  unsigned probes = 0;
-
 private:
   void forgetDrive(bool after_silence);
-  void adoptSettings();
   Judgement compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete);
   std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);
-
-  /// All settings that are left were refused for the moment.
-  TimePoint refused_setting_not_before_;
-
-  std::uint64_t eeprom_writes_ = 0;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -24,6 +24,7 @@ void Link::answered(const wire::Reply& reply)
 {
   last_answer_ = reply.finished_at;
   slowest_reply_ = std::max(slowest_reply_, reply.turnaround);
+  trial_.answered();
   if (offline_)
   {
     trial_.begin();
@@ -82,6 +83,16 @@ bool Link::statusComplete()
 }
 
 // --- an offline inverter that answers --------------------------------------------------------------------------------
+
+void Link::probeSent()
+{
+  trial_.probeSent();
+}
+
+unsigned Link::probes() const
+{
+  return trial_.probes();
+}
 
 void Link::noteCost(bool probe, wire::Outcome outcome, Duration cost)
 {

@@ -39,6 +39,10 @@ public:
   bool statusComplete();
 
   // --- an offline inverter that answers -----------------------------------------------------------------------------
+  /// A bare probe is on its way.
+  void probeSent();
+  /// Bare probes since the last answer.
+  unsigned probes() const;
   /// What an exchange has cost, see Trial.
   void noteCost(bool probe, wire::Outcome outcome, Duration cost);
   /// A reply to a probe came late, \p delay after its request but no more than the response timeout: worth a trial, too.

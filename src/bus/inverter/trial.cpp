@@ -22,6 +22,21 @@ void Trial::exchangeEnded(bool probe, wire::Outcome outcome, Duration cost)
   waste_ = (under_way_ ? waste_ : Duration::zero()) + (wasted ? cost : Duration::zero());
 }
 
+void Trial::probeSent()
+{
+  ++probes_;
+}
+
+unsigned Trial::probes() const
+{
+  return probes_;
+}
+
+void Trial::answered()
+{
+  probes_ = 0;
+}
+
 void Trial::begin()
 {
   probed_ = false;

@@ -17,7 +17,13 @@ class Trial
 public:
   /// An exchange with the inverter has ended. \p probe: it asked whether the inverter is back.
   void exchangeEnded(bool probe, wire::Outcome outcome, Duration cost);
-  /// A reply came. What its exchange has cost is the first part of the trial's price.
+  /// A bare probe has left.
+  void probeSent();
+  /// Bare probes since the last answer.
+  unsigned probes() const;
+  /// A reply came, whether to a probe or not.
+  void answered();
+  /// It came from an inverter that is offline. What its exchange has cost is the first part of the trial's price.
   void begin();
   /// A reply to a probe came late: true if that was worth a trial. What that probe has cost is paid already.
   bool beginLate();
@@ -29,6 +35,7 @@ public:
   bool underWay() const;
 
 private:
+  unsigned probes_ = 0;
   bool under_way_ = false;
   /// Since the last trial, and it has not been answered yet.
   bool probed_ = false;

@@ -129,7 +129,7 @@ std::vector<std::string> profileWarnings(const Inverter& inverter)
   if (writesWear(inverter))
   {
     warnings.push_back("every change of the set-point is written to the drive's EEPROM (" +
-                       std::to_string(inverter.eepromWrites()) +
+                       std::to_string(inverter.services.eepromWrites()) +
                        " writes so far): " + inverter.drive.armingAdvice("connect"));
   }
   return warnings;
@@ -153,7 +153,7 @@ InverterStatus statusOf(const Inverter& inverter, TimePoint now)
   }
   status.run_command = inverter.movement.runCommand();
   status.move_velocity_active = inverter.movement.active();
-  status.reset_active = inverter.reset_active;
+  status.reset_active = inverter.services.resetting();
   status.stop_active = inverter.stop.pending();
   status.locked = inverter.interlock.locked(now);
   showError(inverter, now, status);
@@ -211,7 +211,7 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   values.emplace_back("own reply delay", util::durationText(inverter.settings.replyDelay()));
   if (profile.writes == drive::Writes::Eeprom || inverter.drive.wears("frequency"))
   {
-    values.emplace_back("EEPROM writes by this node", std::to_string(inverter.eepromWrites()));
+    values.emplace_back("EEPROM writes by this node", std::to_string(inverter.services.eepromWrites()));
   }
   if (profile.block)
   {

@@ -156,6 +156,15 @@ TEST_F(LostLink, aPortThatIsBackIsNoReasonAnyMore)
   link_.probed(answer(10));
   EXPECT_EQ(wire::ERROR_TIMEOUT, link_.error()) << "its status is what is missing now";
 }
+
+TEST_F(LostLink, countsProbesUntilOneIsAnswered)
+{
+  link_.probeSent();
+  link_.probeSent();
+  EXPECT_EQ(2U, link_.probes());
+  link_.answered(answer(10));
+  EXPECT_EQ(0U, link_.probes());
+}
 }  // namespace
 }  // namespace bus
 }  // namespace inverter_bus

@@ -90,6 +90,16 @@ TEST(Trial, isOverWhenTheInverterGoesOfflineAgain)
   EXPECT_FALSE(trial.underWay());
   EXPECT_FALSE(trial.beginLate());
 }
+
+TEST(Trial, countsBareProbesSinceTheLastAnswer)
+{
+  Trial trial;
+  trial.probeSent();
+  trial.probeSent();
+  EXPECT_EQ(2U, trial.probes());
+  trial.answered();
+  EXPECT_EQ(0U, trial.probes());
+}
 }  // namespace
 }  // namespace bus
 }  // namespace inverter_bus

@@ -16,7 +16,7 @@ namespace inverter_bus
 namespace wire
 {
 /// Time that passes only when somebody waits.
-class VirtualClock : public Clock
+class VirtualClock : public util::Clock
 {
 public:
   TimePoint now() const override

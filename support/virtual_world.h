@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "inverter_bus/simulation/simulated_bus.h"
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 #include "inverter_bus/wire/port.h"
 
 // What a whole bus in virtual time stands on; for the unit tests and for the fuzz program (fuzz/).
@@ -19,7 +19,7 @@ namespace inverter_bus
 {
 /// Virtual time with appointments: what somebody does at an instant happens at that instant, also in the middle of an
 /// exchange.
-class AppointedClock : public wire::Clock
+class AppointedClock : public util::Clock
 {
 public:
   TimePoint now() const override

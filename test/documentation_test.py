@@ -199,7 +199,7 @@ class Readme(unittest.TestCase):
         self.assertEqual(documented, found)
 
     def testBoundsOfServicesAreThoseOfTheCode(self):
-        bounds = members(read('include/inverter_bus/bus/bus.h'), 'ServiceBounds')
+        bounds = members(read('include/inverter_bus/bus/types.h'), 'ServiceBounds')
         for name, _kind, bound, _ in table(self.readme, '## Services'):
             service = name.split('/')[-1].lstrip('~')
             if service != 'dump_trace':
@@ -347,6 +347,35 @@ class Documents(unittest.TestCase):
                                     universal_newlines=True, check=True)
             self.assertIn(script, answer.stdout)
             self.assertNotIn('#', answer.stdout)
+
+
+class Architecture(unittest.TestCase):
+    """docs/architecture.md names every room and no file that is not there."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.text = read('docs/architecture.md')
+
+    def testEveryRoomIsInTheTable(self):
+        table = self.text[self.text.index('## Rooms'):self.text.index('## Threads')]
+        rooms = {cell for row in re.findall(r'^\| (`[^|]*`) \|', table, re.MULTILINE) for cell in re.findall(r'`([^`]+)`', row)}
+        folders = {os.path.relpath(path, os.path.join(ROOT, 'src')) for pattern in ('*', os.path.join('*', '*'))
+                   for path in glob.glob(os.path.join(ROOT, 'src', pattern)) if os.path.isdir(path)}
+        inside = {folder for folder in folders if os.path.dirname(folder) in ('simulation',)}
+        containers = {'wire'}
+        self.assertEqual(rooms, folders - inside - containers)
+
+    def testEveryPlaceToLookIsThere(self):
+        table = self.text[self.text.index('## Where to look'):]
+        places = [cell for row in re.findall(r'^\| [^|`]* \| (.*) \|$', table, re.MULTILINE)
+                  for cell in re.findall(r'`([\w/.<>]+/[\w/.<>]+)`', row)]
+        self.assertGreater(len(places), 20)
+        for place in places:
+            with self.subTest(place=place):
+                base = place.replace('<family>', '*')
+                found = [path for start in ('', 'src') for end in ('', '.h', '.cpp', '*.cpp')
+                         for path in glob.glob(os.path.join(ROOT, start, base + end))]
+                self.assertTrue(found, place + ' is not there')
 
 
 if __name__ == '__main__':

@@ -165,10 +165,19 @@ def report(program, outcome):
             print('         | %s' % re.sub(r'\x1b\[[0-9;]*m|[^\x20-\x7e]', '', line))
 
 
+def unit_test_names():
+    """unit/wire/line_test.cpp and system/alive_test.cpp are the programs wire_line_test and system_alive_test."""
+    for path in glob.glob(os.path.join(ROOT, 'test', 'unit', '*', '*_test.cpp')) + \
+            glob.glob(os.path.join(ROOT, 'test', 'system', '*_test.cpp')):
+        folder, name = os.path.split(os.path.splitext(path)[0])
+        yield os.path.basename(folder) + '_' + name
+
+
 def unit_programs(build):
+    names = set(unit_test_names())
     for path in sorted(glob.glob(os.path.join(build, 'devel', 'lib', 'inverter_bus', '*_test'))):
         name = os.path.basename(path)
-        if not os.path.exists(os.path.join(ROOT, 'test', 'unit', name + '.cpp')):
+        if name not in names:
             continue  # left over in the build from a test that has moved
         results = os.path.join(build, 'results', name)
         yield Program('unit', name, [path, '--gtest_output=xml:%s/%s.xml' % (results, name)], results=results)
@@ -183,7 +192,7 @@ def ros_programs(build):
                       environment={'ROS_TEST_RESULTS_DIR': results, 'ROS_HOME': home, 'ROS_IP': '127.0.0.1'})
 
 
-def lint_programs(build):
+def lint_programs(build, whole=False):
     sources = [path for pattern in ('include/**/*.h', 'src/**/*.h', 'src/**/*.cpp', 'test/**/*.h', 'test/**/*.cpp',
                                     'benchmark/**/*.h', 'benchmark/**/*.cpp', 'fuzz/**/*.h', 'fuzz/**/*.cpp')
                for path in sorted(glob.glob(os.path.join(ROOT, pattern), recursive=True))]
@@ -198,11 +207,16 @@ def lint_programs(build):
         yield Program('lint', 'catkin_lint', ['catkin_lint', '--offline', '--strict', '-W1'] +
                       [word for name in ignored for word in ('--ignore', name)] + [ROOT])
     if shutil.which('shellcheck'):
-        scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/install_dependencies', 'scripts/common.sh',
-                   '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
+        scripts = ['scripts/test', 'scripts/demo', 'scripts/fuzz', 'scripts/benchmark', 'scripts/install_dependencies',
+                   'scripts/common.sh', '.ci/run'] + sorted(glob.glob(os.path.join(ROOT, 'findings', '*.sh')))
         yield Program('lint', 'shellcheck', ['shellcheck', '-x'] + scripts)
     yield python_program('lint', 'test/documentation_test.py', build)
     yield python_program('lint', 'test/contract_test.py', build)
+    yield python_program('lint', 'test/steady_waits_test.py', build)
+    # As many processes as cores; only what differs from the main branch, or all.
+    yield Program('lint', 'clang_tidy', [sys.executable, os.path.join(ROOT, 'test', 'tidy.py'), '--build', build] +
+                  (['--whole'] if whole else []), time_limit=3600.0)
+    yield python_program('lint', 'test/tidy_test.py', build)
     yield Program('lint', 'sizes', [sys.executable, os.path.join(ROOT, 'test', 'sizes.py')])
     yield python_program('lint', 'test/sizes_test.py', build)
     yield Program('lint', 'mutations_fit', [sys.executable, os.path.join(ROOT, 'scripts', 'mutate'), '--check'])
@@ -283,11 +297,12 @@ def main():
     parser.add_argument('--build', required=True)
     parser.add_argument('--only', choices=['unit', 'fuzz', 'ros', 'lint'])
     parser.add_argument('--match', default='')
+    parser.add_argument('--whole', action='store_true', help='clang-tidy over all, not only over what differs from main')
     parser.add_argument('--sanitize', choices=['address', 'thread'])
     arguments = parser.parse_args()
     build = os.path.abspath(arguments.build)
 
-    groups = {'lint': lint_programs, 'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs,
+    groups = {'lint': functools.partial(lint_programs, whole=arguments.whole), 'unit': unit_programs, 'fuzz': fuzz_programs, 'ros': ros_programs,
               'other': other_programs}
     if arguments.only:
         groups = {arguments.only: groups[arguments.only]}

@@ -124,7 +124,7 @@ def read_exemptions(text):
             continue
         kind, size, name, reason = match.groups()
         if (kind, name) in exemptions:
-            problems.append((number, '%s %s stands here twice' % (kind, name)))
+            problems.append((number, '%s %s is listed twice' % (kind, name)))
         exemptions[kind, name] = Exemption(kind, int(size), name, reason, number)
     return exemptions, problems
 
@@ -149,7 +149,7 @@ def judge(sizes, exemptions):
         size = largest.get(key)
         here = (EXCEPTIONS, exemption.line)
         if size is None:
-            problems.append(here + ('%s %s: there is no such' % key,))
+            problems.append(here + ('%s %s: does not exist' % key,))
         elif size.number <= size.limit:
             problems.append(here + ('%s %s: no longer needed, it is down to %d' % (key + (size.number,)),))
         elif exemption.number > size.number * SLACK:

@@ -310,7 +310,7 @@ class Limits(Tree):
         self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp: no longer needed, it is down to 500'],
                          self.findings())
         os.remove(os.path.join(self.root, 'src/wire/long.cpp'))
-        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp: there is no such'], self.findings())
+        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp: does not exist'], self.findings())
 
     def test_an_exception_is_for_one_kind_only(self):
         self.write('src/wire/class.h', 'namespace inverter_bus {\n%s}\n' % a_class('TooMuch', 26, 13))
@@ -331,7 +331,7 @@ class Limits(Tree):
             lines 600 src/wire/other.cpp a reason
         '''))
         wrong = 'not KIND NUMBER NAME REASON, with function, methods, members or file as its kind'
-        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp stands here twice',
+        self.assertEqual([sizes.EXCEPTIONS + ':2: file src/wire/long.cpp is listed twice',
                           sizes.EXCEPTIONS + ':3: ' + wrong, sizes.EXCEPTIONS + ':4: ' + wrong], self.findings())
 
 

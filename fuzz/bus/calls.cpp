@@ -21,7 +21,7 @@ Calls::Callback both(const Calls::Callback& check, const Calls::Callback& answer
 }
 }  // namespace
 
-Calls::Calls(bus::Coordinator& coordinator, Checker& checker, Story& story, const wire::Clock& clock)
+Calls::Calls(bus::Coordinator& coordinator, Checker& checker, Story& story, const util::Clock& clock)
   : coordinator_(coordinator), checker_(checker), story_(story), clock_(clock), bounds_(coordinator.bounds())
 {
 }

@@ -9,7 +9,7 @@
 #include "bus/coordinator.h"
 #include "fuzz/bus/checker.h"
 #include "fuzz/bus/story.h"
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {
@@ -21,7 +21,7 @@ class Calls
 public:
   using Callback = std::function<void(const bus::Answer&)>;
 
-  Calls(bus::Coordinator& coordinator, Checker& checker, Story& story, const wire::Clock& clock);
+  Calls(bus::Coordinator& coordinator, Checker& checker, Story& story, const util::Clock& clock);
 
   void stop(std::optional<std::size_t> index, std::uint8_t mode, const Callback& answered);
   void reset(std::size_t index, const Callback& answered);
@@ -36,7 +36,7 @@ private:
   bus::Coordinator& coordinator_;
   Checker& checker_;
   Story& story_;
-  const wire::Clock& clock_;
+  const util::Clock& clock_;
   bus::ServiceBounds bounds_;
 };
 }  // namespace fuzz

@@ -8,7 +8,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-Checker::Checker(const Scene& scene, simulation::SimulatedBus& bus, const wire::Clock& clock,
+Checker::Checker(const Scene& scene, simulation::SimulatedBus& bus, const util::Clock& clock,
                  std::function<bool(std::size_t)> budget_warns)
   : checks_(scene, bus, clock, std::move(budget_warns)), line_(checks_), users_(checks_), statuses_(checks_)
 {

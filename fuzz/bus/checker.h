@@ -35,7 +35,7 @@ class Checker
 {
 public:
   /// \p budget_warns the node warns that it can't serve an inverter within its communication time-out.
-  Checker(const Scene& scene, simulation::SimulatedBus& bus, const wire::Clock& clock,
+  Checker(const Scene& scene, simulation::SimulatedBus& bus, const util::Clock& clock,
           std::function<bool(std::size_t)> budget_warns);
 
   /// Where it is told what happens.

@@ -8,7 +8,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-Checks::Checks(const Scene& scene, simulation::SimulatedBus& bus, const wire::Clock& clock,
+Checks::Checks(const Scene& scene, simulation::SimulatedBus& bus, const util::Clock& clock,
                std::function<bool(std::size_t)> budget_warns)
   : clock(clock)
   , plant(scene, bus)

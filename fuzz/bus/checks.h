@@ -39,7 +39,7 @@ namespace fuzz
 struct Checks
 {
   /// \p budget_warns the node warns that it can't serve an inverter within its communication time-out.
-  Checks(const Scene& scene, simulation::SimulatedBus& bus, const wire::Clock& clock,
+  Checks(const Scene& scene, simulation::SimulatedBus& bus, const util::Clock& clock,
          std::function<bool(std::size_t)> budget_warns);
 
   /// Everybody must return to neutral before this inverter moves again; \p by_stop: and its stop must be confirmed.
@@ -47,7 +47,7 @@ struct Checks
   /// Its order is void.
   void forbid(TimePoint now, std::size_t index);
 
-  const wire::Clock& clock;
+  const util::Clock& clock;
   Plant plant;
   Recorder recorder;
   const Observed& observed;

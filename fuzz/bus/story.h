@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "inverter_bus/simulation/simulated_bus.h"
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

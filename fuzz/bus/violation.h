@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

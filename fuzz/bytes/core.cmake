@@ -42,8 +42,8 @@ if(LIBFUZZER)
   target_compile_options(fuzz_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-file(GLOB_RECURSE CORE_SOURCES CONFIGURE_DEPENDS ${ROOT}/src/config/*.cpp ${ROOT}/src/wire/*.cpp ${ROOT}/src/drive/*.cpp
-  ${ROOT}/src/bus/*.cpp)
+file(GLOB_RECURSE CORE_SOURCES CONFIGURE_DEPENDS ${ROOT}/src/util/*.cpp ${ROOT}/src/config/*.cpp ${ROOT}/src/wire/*.cpp
+  ${ROOT}/src/drive/*.cpp ${ROOT}/src/bus/*.cpp)
 list(FILTER CORE_SOURCES EXCLUDE REGEX "_main\\.cpp$")
 add_library(fuzz_core STATIC ${CORE_SOURCES})
 target_include_directories(fuzz_core PUBLIC ${ROOT}/include ${ROOT}/src)

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "bench/profile_drive.h"
-#include "config/shown.h"
 #include "inverter_bus/bus/configuration.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -42,13 +42,13 @@ void giveProfile(simulation::DriveConfig& drive, const bus::Configuration& judge
   if (known == inverters.end())
   {
     throw simulation::ConfigError(
-        "simulation/" + config::shown(drive.options.name) +
+        "simulation/" + util::printable(drive.options.name) +
         "/model: profile, and no scan list entry names its drive (allowed: a simulated model)");
   }
   const drive::Profile& profile = judged.drives[static_cast<std::size_t>(known - inverters.begin())].profile();
   if (profile.protocol != "modbus_rtu")
   {
-    throw simulation::ConfigError("drive: " + config::shown(known->drive) + " of " + known->name + " speaks " +
+    throw simulation::ConfigError("drive: " + util::printable(known->drive) + " of " + known->name + " speaks " +
                                   profile.protocol + " (allowed: a profile for modbus_rtu, or a simulated model)");
   }
   const auto shared = std::make_shared<const drive::Profile>(profile);

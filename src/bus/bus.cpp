@@ -5,7 +5,6 @@
 #include <pthread.h>
 
 #include <atomic>
-#include <condition_variable>
 #include <cstring>
 #include <mutex>
 #include <thread>
@@ -15,6 +14,7 @@
 #include "bus/bus_loop.h"
 #include "bus/coordinator.h"
 #include "bus/report/flight_recorder.h"
+#include "util/steady_condition.h"
 
 namespace inverter_bus
 {
@@ -51,20 +51,20 @@ struct Bus::Implementation
       answers = coordinator.takeAnswers();
       poked = true;
     }
-    wake.notify_one();
+    wake.notifyOne();
     answerNow(answers);
   }
 
   const Configuration configuration;
   std::unique_ptr<wire::Port> port;
   Observer& observer;
-  mutable wire::SteadyClock clock;
+  mutable util::SteadyClock clock;
   std::unique_ptr<wire::Protocol> protocol;
   wire::Line line;
   FlightRecorder recorder;
 
   mutable std::mutex mutex;
-  std::condition_variable wake;
+  util::SteadyCondition wake;
   Coordinator coordinator;
   BusLoop loop;
   bool poked = false;
@@ -147,7 +147,7 @@ void Bus::Implementation::run()
     }
     if (next_round > clock.now() && !poked)
     {
-      wake.wait_until(lock, next_round, [this] { return poked; });
+      wake.waitUntil(lock, next_round, [this] { return poked; });
     }
     poked = false;
   }
@@ -186,7 +186,7 @@ std::vector<std::string> Bus::shutdown()
     bus.poked = true;
     bus.coordinator.beginShutdown(bus.clock.now());
   }
-  bus.wake.notify_one();
+  bus.wake.notifyOne();
   if (bus.thread.joinable())
   {
     bus.thread.join();

@@ -21,7 +21,7 @@ constexpr double IN_USE_PATIENCE_S = 30.0;
 constexpr double ADAPTER_PERIOD_S = 5.0;
 }  // namespace
 
-BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex)
+BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, util::Clock& clock, std::mutex& mutex)
   : coordinator_(coordinator), line_(line), clock_(clock), mutex_(mutex)
 {
 }

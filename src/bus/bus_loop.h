@@ -18,7 +18,7 @@ class BusLoop
 {
 public:
   /// \p mutex guards \p coordinator; it is never held while the line is used.
-  BusLoop(Coordinator& coordinator, wire::Line& line, wire::Clock& clock, std::mutex& mutex);
+  BusLoop(Coordinator& coordinator, wire::Line& line, util::Clock& clock, std::mutex& mutex);
 
   /// One round, at most one exchange. Returns the time of the next round at the latest; in the past: at once.
   TimePoint step();
@@ -35,7 +35,7 @@ private:
 
   Coordinator& coordinator_;
   wire::Line& line_;
-  wire::Clock& clock_;
+  util::Clock& clock_;
   std::mutex& mutex_;
   TimePoint next_open_;
   TimePoint next_look_;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-#include <cstdio>
-
 #include "inverter_bus/bus/types.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -32,9 +31,7 @@ bool isLastingRefusal(const wire::Reply& reply)
 
 std::string errorIdText(std::uint16_t error_id)
 {
-  char text[8];
-  std::snprintf(text, sizeof text, "0x%04X", error_id);
-  return text;
+  return util::hexNumber(error_id);
 }
 
 std::string lockedText(bool tripped)
@@ -48,10 +45,7 @@ std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code)
 {
   if (error_id == wire::ERROR_TIMEOUT && gateway_code != 0)
   {
-    char answered[64];
-    std::snprintf(answered, sizeof answered, "no reply in time (the gateway answered with exception %02XH)",
-                  static_cast<unsigned>(gateway_code));
-    return answered;
+    return "no reply in time (the gateway answered with exception " + util::hexText(gateway_code, 2) + "H)";
   }
   switch (error_id)
   {
@@ -80,14 +74,8 @@ std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code)
     default:
       break;
   }
-  char text[48];
-  if (error_id >= 0x8000)
-  {
-    std::snprintf(text, sizeof text, "the drive answered exception %02XH", error_id & 0xFFU);
-    return text;
-  }
-  std::snprintf(text, sizeof text, "response code %04X", error_id);
-  return text;
+  return error_id >= 0x8000 ? "the drive answered exception " + util::hexText(error_id & 0xFFU, 2) + "H"
+                            : "response code " + util::hexText(error_id, 4);
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "config/shown.h"
 #include "config/yaml.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -51,13 +51,14 @@ private:
     value.type = Value::Type::Map;
     for (const YamlEntry& entry : node.entries)
     {
-      const std::string key = path.empty() ? shown(entry.key.text) : path + "." + shown(entry.key.text);
+      const std::string key =
+          path.empty() ? util::printable(entry.key.text) : path + "." + util::printable(entry.key.text);
       if (entry.key.type != Scalar::Type::Text)
       {
         problems_.push_back({ entry.line, key,
-                              "the key '" + shown(entry.key.text) +
-                                  "' is no text, and roslaunch can load no other: allowed: '" + shown(entry.key.text) +
-                                  "' in quotes" });
+                              "the key '" + util::printable(entry.key.text) +
+                                  "' is no text, and roslaunch can load no other: allowed: '" +
+                                  util::printable(entry.key.text) + "' in quotes" });
       }
       value.map.emplace(entry.key.text, convert(entry.value, key));
     }

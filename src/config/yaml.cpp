@@ -8,8 +8,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "config/shown.h"
 #include "config/yaml_text.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -31,7 +31,7 @@ std::string canonical(const Scalar& key)
 
 std::string below(const std::string& path, const std::string& key)
 {
-  return path.empty() ? shown(key) : path + "." + shown(key);
+  return path.empty() ? util::printable(key) : path + "." + util::printable(key);
 }
 
 class Reader
@@ -94,7 +94,7 @@ private:
     const std::string& tag = node.Tag();
     if (!tag.empty() && tag != "?" && tag != "!" && tag != allowed)
     {
-      add(lineOf(node), path, "has the tag " + shown(tag) + ": allowed: no tag");
+      add(lineOf(node), path, "has the tag " + util::printable(tag) + ": allowed: no tag");
     }
   }
 
@@ -103,7 +103,7 @@ private:
     result.scalar = readScalar(node.Scalar(), node.Tag());
     if (!result.scalar.trap.empty())
     {
-      add(result.line, path, "value '" + shown(result.scalar.text) + "' " + result.scalar.trap);
+      add(result.line, path, "value '" + util::printable(result.scalar.text) + "' " + result.scalar.trap);
     }
   }
 
@@ -159,7 +159,8 @@ private:
     const bool merges = entry.key.text == "<<" || entry.key.text == "=";
     if (!entry.key.trap.empty() && !merges)
     {
-      add(entry.line, below(path, entry.key.text), "the key '" + shown(entry.key.text) + "' " + entry.key.trap);
+      add(entry.line, below(path, entry.key.text),
+          "the key '" + util::printable(entry.key.text) + "' " + entry.key.trap);
     }
     return true;
   }

@@ -43,7 +43,7 @@ struct YamlEntry
   YamlNode value;
 };
 
-/// A mistake in a text: one line of any bytes (fit it for a log with shown()).
+/// A mistake in a text: one line of any bytes (fit it for a log with util::printable()).
 struct YamlProblem
 {
   int line = 0;      ///< from 1; 0: the whole text

@@ -10,8 +10,8 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
-#include "config/utf8.h"
 #include "config/yaml_spacing.h"
+#include "util/utf8.h"
 
 namespace inverter_bus
 {
@@ -109,7 +109,7 @@ int lineOfUnprintable(const std::string& yaml)
   int line = 1;
   for (std::size_t at = 0; at < yaml.size();)
   {
-    const Character character = characterAt(yaml, at);
+    const util::Character character = util::characterAt(yaml, at);
     if (character.length == 0 || !isPrintable(character.code))
     {
       return line;

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <vector>
 
+#include "util/text.h"
+
 #include "inverter_bus/drive/profile.h"
 
 namespace
@@ -18,28 +20,19 @@ const char* const USAGE =
     "Says what is wrong with a drive profile (one line per mistake, exit status 1), or what it holds (exit status "
     "0).\n";
 
-std::string nameList(const std::set<std::string>& names)
-{
-  std::string text;
-  for (const std::string& name : names)
-  {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
-}
-
 void printSummary(const std::string& path, const inverter_bus::drive::Profile& profile)
 {
   std::printf("%s: ok, %zu parameters, %zu status items, %zu commands, %zu trip texts\n", path.c_str(),
               profile.parameters.size(), profile.status.size(), profile.sequences.size(), profile.faults.size());
   if (!profile.unconfirmed.empty())
   {
-    std::printf("%s: unconfirmed commands and monitors: %s\n", path.c_str(), nameList(profile.unconfirmed).c_str());
+    std::printf("%s: unconfirmed commands and monitors: %s\n", path.c_str(),
+                inverter_bus::util::joined(profile.unconfirmed).c_str());
   }
   if (!profile.unconfirmed_tables.empty())
   {
     std::printf("%s: unconfirmed parameters, ranges and texts: %s\n", path.c_str(),
-                nameList(profile.unconfirmed_tables).c_str());
+                inverter_bus::util::joined(profile.unconfirmed_tables).c_str());
   }
 }
 }  // namespace

@@ -10,6 +10,7 @@
 #include "drive/codec/read_plan.h"
 #include "drive/profile/numbers.h"
 #include "drive/profile/status_fields.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -277,12 +278,7 @@ std::string Drive::missingFor(const std::string& name) const
     // What can't be stopped for certain must not be set running.
     collectMissing("stop", profile_, missing);
   }
-  std::string names;
-  for (const std::string& entry : missing)
-  {
-    names += (names.empty() ? "" : ", ") + entry;
-  }
-  return names;
+  return util::joined(missing);
 }
 
 bool Drive::runsWithoutStop() const
@@ -308,15 +304,10 @@ std::string Drive::armingAdvice(const std::string& name) const
 
 std::string Drive::unconfirmedText() const
 {
-  std::string names;
-  for (const std::string& mark : profile_.unconfirmed)
-  {
-    names += (names.empty() ? "" : ", ") + mark;
-  }
   const std::string unneeded = skippableUnconfirmed();
   return profile_.unconfirmed.empty()
              ? ""
-             : names + "; " + adviceFor(profile_.unconfirmed) +
+             : util::joined(profile_.unconfirmed) + "; " + adviceFor(profile_.unconfirmed) +
                    (unneeded.empty() ? "" : "; what nobody needs can be left out: skip: [" + unneeded + "]");
 }
 
@@ -345,12 +336,7 @@ std::string Drive::skippableUnconfirmed() const
       names.insert("trip_memory");
     }
   }
-  std::string text;
-  for (const std::string& name : names)
-  {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
+  return util::joined(names);
 }
 
 /// A value that is known but unproven is confirmed; one that nobody knows is given.

@@ -8,6 +8,7 @@
 #include "drive/codec/read_plan.h"
 #include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -165,7 +166,7 @@ std::vector<std::pair<std::string, std::string>> Drive::chosenValues(const ReadB
       value = value / 100.0 * *rating;
       unit = item->base == Base::RatedVoltage ? "V" : "A";
     }
-    values.emplace_back(entry.second.title, formatNumber(value) + (unit.empty() ? "" : " " + unit));
+    values.emplace_back(entry.second.title, util::withUnit(util::exactText(value), unit));
   }
   return values;
 }

@@ -2,13 +2,15 @@
 // Copyright (c) 2026 the inverter_bus authors
 // The part of Drive that knows why the motor stands: trip memory, warnings, exceptions.
 
-#include <cstdio>
+#include <string>
+#include <vector>
 
 #include "drive/codec/codec.h"
 #include "drive/codec/read_plan.h"
 #include "drive/profile/numbers.h"
 #include "drive/profile/status_fields.h"
 #include "inverter_bus/drive/drive.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -101,7 +103,7 @@ std::string Drive::tripText(const Monitor& monitor) const
   {
     return "trip " + std::to_string(code) + ": " + (code == 0 ? "no reason given" : faultText(code));
   }
-  return "unknown state " + std::to_string(*monitor.unknown_trip) + " (" + formatHex(*monitor.unknown_trip) +
+  return "unknown state " + std::to_string(*monitor.unknown_trip) + " (" + util::hexNumber(*monitor.unknown_trip) +
          ") of faulted, which stands in no table and counts as a trip" +
          (code == 0 ? "" : "; trip " + std::to_string(code) + ": " + faultText(code));
 }
@@ -110,21 +112,21 @@ namespace
 {
 std::string warningBits(std::uint32_t code, const FaultTable& table)
 {
-  std::string texts;
+  std::vector<std::string> texts;
   std::uint32_t rest = code;
   for (const auto& [bits, text] : table)
   {
     if ((code & bits) == bits)
     {
-      texts += (texts.empty() ? "" : ", ") + text;
+      texts.push_back(text);
       rest &= ~static_cast<std::uint32_t>(bits);
     }
   }
   if (rest != 0)
   {
-    texts += (texts.empty() ? "" : ", ") + ("warning " + std::to_string(rest));
+    texts.push_back("warning " + std::to_string(rest));
   }
-  return texts;
+  return util::joined(texts);
 }
 }  // namespace
 
@@ -154,9 +156,7 @@ std::string compowayText(std::uint16_t error_id, const std::map<unsigned, std::s
   {
     return "";  // 0x0205 to 0x0207 are the bus's own
   }
-  char number[8];
-  std::snprintf(number, sizeof(number), end_code ? "%02X" : "%04X", error_id);
-  return std::string(end_code ? "end code " : "response code ") + number + ": " +
+  return (end_code ? "end code " + util::hexText(error_id, 2) : "response code " + util::hexText(error_id, 4)) + ": " +
          (meaning == own.end() ? "unknown to the profile" : meaning->second);
 }
 }  // namespace
@@ -183,9 +183,7 @@ std::string Drive::exceptionText(std::uint16_t error_id) const
   {
     meaning = common->second;
   }
-  char number[8];
-  std::snprintf(number, sizeof(number), "%02XH", code);
-  return std::string("exception ") + number + ": " + meaning;
+  return "exception " + util::hexText(code, 2) + "H: " + meaning;
 }
 }  // namespace drive
 }  // namespace inverter_bus

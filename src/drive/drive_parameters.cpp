@@ -10,6 +10,7 @@
 #include "drive/codec/codec.h"
 #include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -92,12 +93,12 @@ std::optional<Parameter> findByNumber(const std::string& name, const Profile& pr
 
 std::string withUnit(double value, const Item& item)
 {
-  return formatNumber(value) + (item.unit.empty() ? "" : " " + item.unit);
+  return util::withUnit(util::exactText(value), item.unit);
 }
 
 std::string outside(const Parameter& parameter, double value, double lowest, double highest, const std::string& why)
 {
-  return parameter.name + ": " + withUnit(value, parameter.item) + " is outside " + formatNumber(lowest) + " to " +
+  return parameter.name + ": " + withUnit(value, parameter.item) + " is outside " + util::exactText(lowest) + " to " +
          withUnit(highest, parameter.item) + why;
 }
 
@@ -107,7 +108,7 @@ std::string betweenCounts(const Parameter& parameter, double value, double count
   const Item& item = parameter.item;
   return parameter.name + ": " + withUnit(value, item) + " is no multiple of the resolution " +
          withUnit(item.resolution, item) + ": the nearest are " +
-         formatNumber(scaleCounts(std::floor(counts), item.resolution)) + " and " +
+         util::exactText(scaleCounts(std::floor(counts), item.resolution)) + " and " +
          withUnit(scaleCounts(std::ceil(counts), item.resolution), item);
 }
 

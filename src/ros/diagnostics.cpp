@@ -6,8 +6,11 @@
 #include <chrono>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <ros/names.h>
+
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -67,15 +70,16 @@ void summarize(const std::vector<bus::Finding>& findings, const std::string& in_
   std::vector<bus::Finding> sorted = findings;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const bus::Finding& a, const bus::Finding& b) { return a.level > b.level; });
-  std::string text;
+  std::vector<std::string> texts;
   for (const bus::Finding& finding : sorted)
   {
     if (finding.level != bus::Level::Ok)
     {
-      text += (text.empty() ? "" : "; ") + finding.text;
+      texts.push_back(finding.text);
     }
   }
-  entry.summary(levelOf(sorted.empty() ? bus::Level::Ok : sorted.front().level), text.empty() ? in_order : text);
+  entry.summary(levelOf(sorted.empty() ? bus::Level::Ok : sorted.front().level),
+                texts.empty() ? in_order : util::joined(texts, "; "));
 }
 
 Diagnostics::Diagnostics(const bus::Configuration& configuration, const bus::Bus& bus, const Commands& commands,

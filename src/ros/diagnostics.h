@@ -13,8 +13,8 @@
 #include "inverter_bus/bus/bus.h"
 #include "ros/commands.h"
 #include "ros/master_watch.h"
-#include "ros/steady_event.h"
 #include "ros/trace_files.h"
+#include "util/steady_event.h"
 
 namespace inverter_bus
 {
@@ -47,7 +47,7 @@ private:
   const TraceFiles& traces_;
   bus::Report report_;  ///< of this round; diagnostics thread only
   diagnostic_updater::Updater updater_;
-  SteadyEvent stopping_;
+  util::SteadyEvent stopping_;
   std::thread thread_;
 };
 

@@ -57,7 +57,7 @@ void ElasticQueue::addCallback(const ros::CallbackInterfacePtr& callback, std::u
       }
     }
   }
-  work_.notify_one();
+  work_.notifyOne();
   joinRetired();
 }
 
@@ -75,7 +75,7 @@ void ElasticQueue::removeByID(std::uint64_t owner_id)
 bool ElasticQueue::waitIdle(Duration timeout)
 {
   std::unique_lock<std::mutex> lock(mutex_);
-  return changed_.wait_for(lock, timeout, [this] { return idle(); });
+  return changed_.waitFor(lock, timeout, [this] { return idle(); });
 }
 
 void ElasticQueue::dropWaiting(std::uint64_t owner_id)
@@ -92,7 +92,7 @@ void ElasticQueue::dropWaiting(std::uint64_t owner_id)
     }
     task = next;
   }
-  changed_.notify_all();
+  changed_.notifyAll();
 }
 
 void ElasticQueue::shutdown()
@@ -102,7 +102,7 @@ void ElasticQueue::shutdown()
     std::unique_lock<std::mutex> lock(mutex_);
     stopping_ = true;
     dropped.swap(waiting_);
-    work_.notify_all();
+    work_.notifyAll();
     changed_.wait(lock, [this] { return threads_.empty(); });
   }
   joinRetired();
@@ -175,7 +175,7 @@ void ElasticQueue::run(Task task, std::unique_lock<std::mutex>& lock)
   {
     running_.erase(owner_id);
   }
-  changed_.notify_all();
+  changed_.notifyAll();
 }
 
 /// Mutex held. The caller's thread ends after this.
@@ -183,7 +183,7 @@ void ElasticQueue::retire(Threads::iterator self)
 {
   --free_threads_;
   retired_.splice(retired_.begin(), threads_, self);
-  changed_.notify_all();
+  changed_.notifyAll();
 }
 
 void ElasticQueue::joinRetired()

@@ -3,7 +3,6 @@
 #ifndef INVERTER_BUS_ROS_ELASTIC_QUEUE_H
 #define INVERTER_BUS_ROS_ELASTIC_QUEUE_H
 
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <list>
@@ -13,7 +12,8 @@
 #include <ros/callback_queue_interface.h>
 #include <boost/thread/thread.hpp>
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
+#include "util/steady_condition.h"
 
 namespace inverter_bus
 {
@@ -66,8 +66,8 @@ private:
 
   const std::size_t most_threads_;
   mutable std::mutex mutex_;
-  std::condition_variable work_;     ///< for the threads of the pool
-  std::condition_variable changed_;  ///< for those who wait for the end of something
+  util::SteadyCondition work_;     ///< for the threads of the pool
+  util::SteadyCondition changed_;  ///< for those who wait for the end of something
   std::list<Task> waiting_;
   std::map<std::uint64_t, std::size_t> running_;  ///< callbacks by owner
   Threads threads_;

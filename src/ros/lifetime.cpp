@@ -53,7 +53,7 @@ void Lifetime::busIsRunning()
   running_.set();
 }
 
-const SteadyEvent& Lifetime::end() const
+const util::SteadyEvent& Lifetime::end() const
 {
   return end_;
 }

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "ros/signals.h"
-#include "ros/steady_event.h"
+#include "util/steady_event.h"
 
 namespace inverter_bus
 {
@@ -32,7 +32,7 @@ public:
   void busIsRunning();
 
   /// Set when the node shall end.
-  const SteadyEvent& end() const;
+  const util::SteadyEvent& end() const;
   /// Waits at most \p timeout; true when the node shall end.
   bool waitForEnd(Duration timeout) const;
 
@@ -44,9 +44,9 @@ public:
 private:
   void onSignal(const std::string& name);
 
-  SteadyEvent end_;
-  SteadyEvent running_;
-  SteadyEvent finished_;
+  util::SteadyEvent end_;
+  util::SteadyEvent running_;
+  util::SteadyEvent finished_;
   std::thread guard_;
   Signals signals_;
 };

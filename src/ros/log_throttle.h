@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "inverter_bus/bus/types.h"
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

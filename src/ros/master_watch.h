@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "inverter_bus/bus/types.h"
-#include "ros/steady_event.h"
+#include "util/steady_event.h"
 
 namespace inverter_bus
 {
@@ -45,7 +45,7 @@ private:
   static std::optional<bus::Finding> findingOf(State state);
 
   std::atomic<State> state_{ State::Known };
-  SteadyEvent stopping_;
+  util::SteadyEvent stopping_;
   std::thread thread_;
 };
 }  // namespace ros_node

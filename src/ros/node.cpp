@@ -23,6 +23,7 @@
 #include "ros/services.h"
 #include "ros/start_up.h"
 #include "ros/trace_files.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -94,11 +95,7 @@ int watch(const Lifetime& lifetime, const bus::Bus& bus)
 
 void logEnd(int status, const bus::BusConfig& config, const std::vector<std::string>& unconfirmed)
 {
-  std::string names;
-  for (const std::string& line : unconfirmed)
-  {
-    names += (names.empty() ? "" : "; ") + line;
-  }
+  const std::string names = util::joined(unconfirmed, "; ");
   if (!names.empty())
   {
     log(bus::Level::Error, "shutdown: NOT confirmed as stopped, look after them: " + names);

@@ -63,7 +63,7 @@ void Publishing::stop()
     const std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
   }
-  changed_.notify_one();
+  changed_.notifyOne();
   if (thread_.joinable())
   {
     thread_.join();
@@ -80,7 +80,7 @@ void Publishing::add(std::deque<Item>& queue, Item item)
     }
     queue.push_back(std::move(item));
   }
-  changed_.notify_one();
+  changed_.notifyOne();
 }
 
 void Publishing::work()
@@ -112,7 +112,7 @@ void Publishing::waitForWork(std::unique_lock<std::mutex>& lock)
   const auto ready = [this] { return stopping_ || !findings_.empty() || !statuses_.empty(); };
   if (const std::optional<TimePoint> due = throttle_.nextDue())
   {
-    changed_.wait_until(lock, *due, ready);
+    changed_.waitUntil(lock, *due, ready);
     return;
   }
   changed_.wait(lock, ready);

@@ -3,7 +3,6 @@
 #ifndef INVERTER_BUS_ROS_PUBLISHING_H
 #define INVERTER_BUS_ROS_PUBLISHING_H
 
-#include <condition_variable>
 #include <deque>
 #include <mutex>
 #include <optional>
@@ -20,6 +19,7 @@
 #include "ros/log_throttle.h"
 #include "ros/status_conversion.h"
 #include "ros/trace_files.h"
+#include "util/steady_condition.h"
 
 namespace inverter_bus
 {
@@ -70,7 +70,7 @@ private:
   std::vector<Moment> moments_;  ///< of each inverter's last reply; publisher thread only
 
   std::mutex mutex_;
-  std::condition_variable changed_;
+  util::SteadyCondition changed_;
   std::deque<Item> findings_;
   std::deque<Item> statuses_;
   bool stopping_ = false;

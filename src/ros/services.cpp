@@ -12,8 +12,8 @@
 
 #include "inverter_bus/wire/request.h"
 #include "ros/status_conversion.h"
-#include "ros/steady_event.h"
-#include "wire/shown_number.h"
+#include "util/steady_event.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -34,7 +34,7 @@ constexpr double MARGIN = 0.5;
 struct AnswerSlot
 {
   bus::Answer answer;
-  SteadyEvent answered;
+  util::SteadyEvent answered;
 };
 
 bus::Answer timeoutAnswer(const std::string& message)
@@ -57,7 +57,7 @@ bus::Answer ask(double bound, const std::function<void(bus::AnswerCallback)>& st
   {
     return slot->answer;
   }
-  return timeoutAnswer("the bus gave no answer in " + wire::shownNumber(bound + MARGIN) + " s: see /diagnostics");
+  return timeoutAnswer("the bus gave no answer in " + util::numberText(bound + MARGIN) + " s: see /diagnostics");
 }
 
 template <typename Response>

@@ -9,7 +9,7 @@
 
 #include "ros/log.h"
 #include "ros/trace_files.h"
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -18,19 +18,6 @@ namespace ros_node
 namespace
 {
 constexpr Duration MASTER_PERIOD = std::chrono::milliseconds(200);
-
-char parityLetter(wire::Parity parity)
-{
-  switch (parity)
-  {
-    case wire::Parity::Even:
-      return 'E';
-    case wire::Parity::Odd:
-      return 'O';
-    default:
-      return 'N';
-  }
-}
 
 const char* rs485Text(wire::Rs485 mode)
 {
@@ -51,9 +38,9 @@ std::string busLine(const bus::BusConfig& config)
 {
   std::ostringstream line;
   line << "port " << config.port << ", " << config.protocol << ", " << config.serial.baud_rate << " baud "
-       << config.serial.data_bits << parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
+       << config.serial.data_bits << wire::parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
        << rs485Text(config.serial.rs485) << (config.exclusive ? ", exclusive" : ", shared") << ", interval "
-       << wire::shownNumber(config.interval) << " s, response_timeout " << wire::shownNumber(config.response_timeout)
+       << util::numberText(config.interval) << " s, response_timeout " << util::numberText(config.response_timeout)
        << " s, retries " << config.retries << ", offline_after " << config.offline_after << ", idle_divisor "
        << config.idle_divisor << ", realtime_priority " << config.realtime_priority << ", parameter_access "
        << (config.parameters_read_only ? "read_only" : "read_write") << ", trace_directory "
@@ -65,11 +52,11 @@ std::string inverterLine(const bus::InverterConfig& config)
 {
   std::ostringstream line;
   line << config.name << ": station " << static_cast<int>(config.node) << ", " << config.drive << ", "
-       << wire::shownNumber(config.hz_per_unit) << " Hz per unit, velocity " << wire::shownNumber(config.min_velocity)
-       << " to " << wire::shownNumber(config.max_velocity) << ", command_timeout "
-       << wire::shownNumber(config.command_timeout) << " s"
+       << util::numberText(config.hz_per_unit) << " Hz per unit, velocity " << util::numberText(config.min_velocity)
+       << " to " << util::numberText(config.max_velocity) << ", command_timeout "
+       << util::numberText(config.command_timeout) << " s"
        << (config.command_timeout > 0.0 ? "" : " (never stopped by silence)") << ", response_timeout "
-       << wire::shownNumber(config.response_timeout) << " s";
+       << util::numberText(config.response_timeout) << " s";
   line << (config.stop_unexpected_motion ? ", stop_unexpected_motion" : "")
        << (config.release_on_exit ? ", release_on_exit" : "")
        << (config.changes.overrides_yaml.empty() ? "" : ", with overrides");
@@ -85,7 +72,7 @@ std::string inverterLine(const bus::InverterConfig& config)
 }
 }  // namespace
 
-bool waitForMaster(const SteadyEvent& end)
+bool waitForMaster(const util::SteadyEvent& end)
 {
   bool told = false;
   while (!ros::master::check())

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "inverter_bus/bus/configuration.h"
-#include "ros/steady_event.h"
+#include "util/steady_event.h"
 
 namespace inverter_bus
 {
@@ -15,7 +15,7 @@ namespace ros_node
 {
 /// Returns true when the ROS master answers, false when \p end comes first. Nothing in roscpp waits for the master and can
 /// be interrupted.
-bool waitForMaster(const SteadyEvent& end);
+bool waitForMaster(const util::SteadyEvent& end);
 
 /// The configuration as it is in force, defaults resolved, a line for the bus and one per inverter.
 std::vector<std::string> effectiveConfiguration(const bus::BusConfig& config);

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "ros/trace_text.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -151,7 +151,7 @@ void TraceFiles::writeSoon(bus::TraceDump dump)
     last_automatic_ = now;
     waiting_ = std::move(dump);
   }
-  changed_.notify_one();
+  changed_.notifyOne();
 }
 
 std::string TraceFiles::writeAsked(const std::function<bus::TraceDump()>& record, TimePoint now, std::string& error)
@@ -189,7 +189,7 @@ std::string TraceFiles::write(const bus::TraceDump& dump, const std::string& kin
     return "";
   }
   removeOldFiles(path, kind);
-  const std::string reason = wire::shown(dump.reason);
+  const std::string reason = util::printable(dump.reason);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     last_ = File{ path, reason };
@@ -210,7 +210,7 @@ void TraceFiles::stop()
     const std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
   }
-  changed_.notify_one();
+  changed_.notifyOne();
   if (thread_.joinable())
   {
     thread_.join();

@@ -3,7 +3,6 @@
 #ifndef INVERTER_BUS_ROS_TRACE_FILES_H
 #define INVERTER_BUS_ROS_TRACE_FILES_H
 
-#include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <thread>
 
 #include "inverter_bus/bus/types.h"
+#include "util/steady_condition.h"
 
 namespace inverter_bus
 {
@@ -72,7 +72,7 @@ private:
   std::optional<TimePoint> last_asked_at_;
 
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
+  util::SteadyCondition changed_;
   std::optional<bus::TraceDump> waiting_;
   std::optional<TimePoint> last_automatic_;
   std::optional<File> last_;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <ctime>
 
+#include "util/text.h"
+
 namespace inverter_bus
 {
 namespace ros_node
@@ -55,9 +57,7 @@ void writeFrame(const wire::FrameEvent& frame, TimePoint previous, WallTime wall
   out << formatUtc(wall, "%H:%M:%S") << ' ' << gap_text << "  " << kindText(frame.kind);
   for (const std::uint8_t byte : frame.bytes)
   {
-    char byte_text[8];
-    std::snprintf(byte_text, sizeof byte_text, " %02X", static_cast<unsigned>(byte));
-    out << byte_text;
+    out << ' ' << util::hexText(byte, 2);
   }
   out << '\n';
 }

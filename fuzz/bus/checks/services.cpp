@@ -20,7 +20,7 @@ constexpr double ROUNDING = 1e-6;
 constexpr double WRITTEN_RESOLUTION = 0.051;
 }  // namespace
 
-Services::Services(const Observed& observed, const Plant& plant, const wire::Clock& clock)
+Services::Services(const Observed& observed, const Plant& plant, const util::Clock& clock)
   : observed_(observed), plant_(plant), clock_(clock), writes_(observed.inverters.size())
 {
 }

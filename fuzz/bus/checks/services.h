@@ -25,7 +25,7 @@ class Services
 public:
   using Callback = std::function<void(const bus::Answer&)>;
 
-  Services(const Observed& observed, const Plant& plant, const wire::Clock& clock);
+  Services(const Observed& observed, const Plant& plant, const util::Clock& clock);
 
   /// A call that has to be answered within \p bound [s]; what it returns is to be given the answer. \p judge (may be
   /// empty) looks at that of a call that succeeded.
@@ -53,7 +53,7 @@ private:
 
   const Observed& observed_;
   const Plant& plant_;
-  const wire::Clock& clock_;
+  const util::Clock& clock_;
   std::map<std::uint64_t, Call> calls_;
   std::uint64_t total_ = 0;
   /// Values that each free parameter was to be set to, and when.

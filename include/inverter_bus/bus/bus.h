@@ -17,16 +17,6 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// The longest that a service waits for its answer [s]; README states them.
-struct ServiceBounds
-{
-  double stop = 2.0;
-  double reset = 8.0;
-  double read_faults = 5.0;
-  double read_parameter = 2.0;
-  double write_parameter = 10.0;
-};
-
 /// One serial bus: the thread that owns the port, and the door to it for everybody else.
 ///
 /// Every public function may be called from any thread, returns at once (shutdown() excepted) and never throws.

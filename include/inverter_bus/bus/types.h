@@ -64,6 +64,16 @@ struct Answer
   std::vector<drive::FaultRecord> faults;
 };
 
+/// The longest that a service waits for its answer [s]; README states them.
+struct ServiceBounds
+{
+  double stop = 2.0;
+  double reset = 8.0;
+  double read_faults = 5.0;
+  double read_parameter = 2.0;
+  double write_parameter = 10.0;
+};
+
 /// Called once, in the bus thread or in the caller's; must not block.
 using AnswerCallback = std::function<void(const Answer&)>;
 

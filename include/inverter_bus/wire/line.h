@@ -112,7 +112,7 @@ public:
   /// Called for every frame, in the bus thread; must be quick.
   using FrameObserver = std::function<void(const FrameEvent&)>;
 
-  Line(Port& port, Protocol& protocol, Clock& clock, LineTiming timing);
+  Line(Port& port, Protocol& protocol, util::Clock& clock, LineTiming timing);
 
   void setFrameObserver(FrameObserver observer);
 
@@ -226,7 +226,7 @@ private:
 
   Port& port_;
   Protocol& protocol_;
-  Clock& clock_;
+  util::Clock& clock_;
   LineTiming timing_;
   FrameObserver observer_;
   LineCounters counters_;

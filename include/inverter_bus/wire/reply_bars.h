@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

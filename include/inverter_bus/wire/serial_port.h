@@ -20,6 +20,9 @@ enum class Parity
   Odd
 };
 
+/// As in "8E1": N, E or O.
+char parityLetter(Parity parity);
+
 /// Who switches the RS-485 transmitter on and off.
 enum class Rs485
 {

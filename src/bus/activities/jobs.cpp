@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "util/text.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -490,11 +492,7 @@ Job::Progress WriteParameterJob::afterStoreStep()
 
 Job::Progress WriteParameterJob::stored()
 {
-  std::string names;
-  for (const std::string& name : ram_changes_)
-  {
-    names += (names.empty() ? "" : ", ") + name;
-  }
+  const std::string names = util::joined(ram_changes_);
   ram_changes_.clear();
   return succeed("stored in the EEPROM with every other RAM change of this drive; made here: " + names);
 }

@@ -14,7 +14,8 @@
 #include "bus/configuration/configuration_keys.h"
 #include "bus/configuration/configuration_scan_list.h"
 #include "bus/configuration/configuration_section.h"
-#include "config/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -160,7 +161,7 @@ void checkSetting(const Section& section, const std::string& key, const Setting&
     names.push_back(settingText(value));
   }
   section.fail(key, settingText(setting) + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
-               join(names));
+               util::joined(names));
 }
 
 void checkSerial(const Section& section, const wire::SerialSettings& serial, const InverterConfig& inverter,
@@ -173,15 +174,12 @@ void checkSerial(const Section& section, const wire::SerialSettings& serial, con
   checkSetting(section, "parity", PARITIES.at(serial.parity), profile.parities, inverter);
   checkSetting(section, "data_bits", serial.data_bits, profile.data_bits, inverter);
   checkSetting(section, "stop_bits", serial.stop_bits, profile.stop_bits, inverter);
-  static const std::map<wire::Parity, std::string> LETTERS{ { wire::Parity::None, "N" },
-                                                            { wire::Parity::Even, "E" },
-                                                            { wire::Parity::Odd, "O" } };
   const std::string character =
-      std::to_string(serial.data_bits) + LETTERS.at(serial.parity) + std::to_string(serial.stop_bits);
+      std::to_string(serial.data_bits) + wire::parityLetter(serial.parity) + std::to_string(serial.stop_bits);
   if (!profile.characters.empty() && profile.characters.count(character) == 0)
   {
     section.fail("stop_bits", character + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
-                 join({ profile.characters.begin(), profile.characters.end() }));
+                 util::joined(profile.characters));
   }
 }
 
@@ -241,7 +239,7 @@ Section withoutForeignKeys(const Value& parameters, const std::string& place, co
     const bool foreign = unknown && !isLibraryKey(key) && remarkOn(key).empty();
     if (foreign)
     {
-      remarks->push_back(drive::oneLine(place + ": parameter '" + config::shown(key) +
+      remarks->push_back(drive::oneLine(place + ": parameter '" + util::printable(key) +
                                         "' = " + describe(entry->second) +
                                         " is none of this node's and is ignored (another node's, or one that a launch "
                                         "file sets for all of them)"));

@@ -8,7 +8,8 @@
 #include <utility>
 
 #include "bus/configuration/configuration_yaml.h"
-#include "wire/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -30,7 +31,7 @@ constexpr double ROUNDING = 1e-9;
 std::string readName(const Section& entry)
 {
   static const std::regex GRAPH_NAME("[A-Za-z][A-Za-z0-9_]*");
-  const std::string allowed = "a letter, then letters, digits and _; not " + join(RESERVED_NAMES);
+  const std::string allowed = "a letter, then letters, digits and _; not " + util::joined(RESERVED_NAMES);
   entry.require("name", allowed);
   std::string name = entry.text("name", "");
   constexpr std::size_t LONGEST_NAME = 255;
@@ -77,15 +78,14 @@ std::vector<std::string> readConfirm(const Section& entry)
 /// that he believes read, is neither.
 void checkSkipped(const Section& entry, const std::string& field)
 {
-  const std::string allowed = "fields of the status that nothing depends on: " +
-                              join({ drive::skippableFields().begin(), drive::skippableFields().end() });
+  const std::string allowed = "fields of the status that nothing depends on: " + util::joined(drive::skippableFields());
   if (drive::protectedFields().count(field) != 0)
   {
     entry.fail("skip", "holds '" + field + "', which the driver can't do without", allowed);
   }
   if (drive::skippableFields().count(field) == 0)
   {
-    entry.fail("skip", "holds '" + wire::shown(field) + "', which is no field of the status", allowed);
+    entry.fail("skip", "holds '" + util::printable(field) + "', which is no field of the status", allowed);
   }
 }
 
@@ -159,7 +159,7 @@ drive::Profile loadProfileOf(const Section& entry, const InverterConfig& config,
     {
       throw;
     }
-    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + wire::shown(config.drive) + "': ";
+    const std::string place = entry.placeOf("drive") + ": key 'drive' = '" + util::printable(config.drive) + "': ";
     throw drive::ConfigurationError(drive::oneLine(place + error.what()));
   }
 }

@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "bus/configuration/configuration_keys.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -88,7 +88,7 @@ std::string entryPlace(const std::string& place, std::size_t index, const Value&
   const auto name = entry.map.find("name");
   if (name != entry.map.end() && name->second.type == Value::Type::Text)
   {
-    text += " (" + wire::shown(name->second.text) + ")";
+    text += " (" + util::printable(name->second.text) + ")";
   }
   return text;
 }

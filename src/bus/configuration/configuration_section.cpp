@@ -8,8 +8,8 @@
 
 #include "bus/configuration/configuration_keys.h"
 #include "config/scalar.h"
-#include "wire/shown.h"
-#include "wire/shown_number.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -17,19 +17,15 @@ namespace bus
 {
 namespace
 {
+constexpr int DIGITS = 9;
 constexpr std::size_t LONGEST_VALUE = 100;
 constexpr std::size_t LONGEST_MESSAGE = 2000;
-
-std::string numberText(double number)
-{
-  return wire::shownNumber(number, 9);
-}
 
 std::string rangeText(const Range& range)
 {
   const std::string unit = range.unit.empty() ? "" : " " + range.unit;
-  const std::string minimum = numberText(range.minimum);
-  const std::string maximum = numberText(range.maximum);
+  const std::string minimum = util::numberText(range.minimum, DIGITS);
+  const std::string maximum = util::numberText(range.maximum, DIGITS);
   if (range.above_minimum)
   {
     return "a number above " + minimum + " and up to " + maximum + unit;
@@ -44,7 +40,7 @@ std::string describeList(const Value& value)
   {
     elements.push_back(describe(element));
   }
-  return "[" + join(elements) + "]";
+  return "[" + util::joined(elements) + "]";
 }
 
 std::string describeMap(const Value& value)
@@ -54,7 +50,7 @@ std::string describeMap(const Value& value)
   {
     elements.push_back(element.first + ": " + describe(element.second));
   }
-  return "{" + join(elements) + "}";
+  return "{" + util::joined(elements) + "}";
 }
 
 std::string describeWhole(const Value& value)
@@ -68,7 +64,7 @@ std::string describeWhole(const Value& value)
     case Value::Type::Integer:
       return std::to_string(value.integer);
     case Value::Type::Number:
-      return numberText(value.number);
+      return util::numberText(value.number, DIGITS);
     case Value::Type::Text:
       return "'" + value.text + "'";
     case Value::Type::List:
@@ -82,21 +78,11 @@ std::string describeWhole(const Value& value)
 
 std::string describe(const Value& value)
 {
-  return wire::shown(describeWhole(value), LONGEST_VALUE);
-}
-
-std::string join(const std::vector<std::string>& names)
-{
-  std::string text;
-  for (const std::string& name : names)
-  {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
+  return util::printable(describeWhole(value), LONGEST_VALUE);
 }
 
 Section::Section(const Value& value, const std::string& place, std::shared_ptr<Remarks> remarks)
-  : place_(wire::shown(place, LONGEST_MESSAGE)), remarks_(std::move(remarks))
+  : place_(util::printable(place, LONGEST_MESSAGE)), remarks_(std::move(remarks))
 {
   if (value.type != Value::Type::Map)
   {
@@ -131,9 +117,9 @@ void Section::refuseUnknownKeys(const std::vector<std::string>& known) const
     if (std::find(known.begin(), known.end(), entry.first) == known.end())
     {
       const std::string remark = remarkOn(entry.first);
-      throw drive::ConfigurationError(entry.second.place + ": unknown key '" + wire::shown(entry.first) +
+      throw drive::ConfigurationError(entry.second.place + ": unknown key '" + util::printable(entry.first) +
                                       "' = " + describe(entry.second.value) + (remark.empty() ? "" : ": " + remark) +
-                                      "; allowed: " + join(known));
+                                      "; allowed: " + util::joined(known));
     }
   }
 }
@@ -278,7 +264,7 @@ std::string Section::choice(const std::string& key, const std::string& fallback,
   }
   if (value->type != Value::Type::Text || std::find(allowed.begin(), allowed.end(), value->text) == allowed.end())
   {
-    fail(key, "is none of the choices", join(allowed));
+    fail(key, "is none of the choices", util::joined(allowed));
   }
   return value->text;
 }
@@ -299,7 +285,7 @@ std::int64_t Section::choice(const std::string& key, std::int64_t fallback,
     {
       names.push_back(std::to_string(number));
     }
-    fail(key, "is none of the choices", withHint(join(names), *value));
+    fail(key, "is none of the choices", withHint(util::joined(names), *value));
   }
   return value->integer;
 }
@@ -322,7 +308,7 @@ void Section::fail(const std::string& key, const std::string& problem, const std
 {
   const Value* value = find(key);
   const std::string given = value == nullptr ? "(not set)" : describe(*value);
-  throw drive::ConfigurationError(wire::shown(
+  throw drive::ConfigurationError(util::printable(
       placeOf(key) + ": key '" + key + "' = " + given + ": " + problem + "; allowed: " + allowed, LONGEST_MESSAGE));
 }
 }  // namespace bus

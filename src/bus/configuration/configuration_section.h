@@ -29,9 +29,6 @@ struct Range
 /// \p value in one short line of printable characters, for messages.
 std::string describe(const Value& value);
 
-/// \p names as "a, b, c".
-std::string join(const std::vector<std::string>& names);
-
 class Section;
 
 /// Key `limit` of the bus or of an entry.

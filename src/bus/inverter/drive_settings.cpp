@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -20,7 +20,7 @@ constexpr unsigned MOST_DOUBLINGS = 6;
 
 std::string withUnit(double value, const std::string& unit)
 {
-  return wire::shownNumber(value, 9) + (unit.empty() ? "" : " ") + unit;
+  return util::withUnit(util::numberText(value, 9), unit);
 }
 }  // namespace
 

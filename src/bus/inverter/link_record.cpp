@@ -3,11 +3,11 @@
 #include "bus/inverter/link_record.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "inverter_bus/bus/types.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -29,9 +29,7 @@ std::uint64_t total(const std::map<std::uint16_t, std::uint64_t>& counts)
 
 std::string gatewayText(std::uint8_t code)
 {
-  char text[64];
-  std::snprintf(text, sizeof text, "without a reply, says the gateway (exception %02XH)", static_cast<unsigned>(code));
-  return text;
+  return "without a reply, says the gateway (exception " + util::hexText(code, 2) + "H)";
 }
 
 std::string exceptionText(const drive::Drive& drive, std::uint16_t error_id)

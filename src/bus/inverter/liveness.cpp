@@ -3,7 +3,8 @@
 #include "bus/inverter/liveness.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -21,10 +22,8 @@ constexpr std::uint16_t MODBUS_EXCEPTIONS = 0x8000;
 std::string refusalText(std::uint16_t error_id)
 {
   const bool modbus = error_id >= MODBUS_EXCEPTIONS;
-  char text[64];
-  std::snprintf(text, sizeof text, modbus ? "answers exception %02X to the status" : "answers %04X to the status",
-                modbus ? error_id & 0xFFU : static_cast<unsigned>(error_id));
-  return text;
+  return "answers " + (modbus ? "exception " + util::hexText(error_id & 0xFFU, 2) : util::hexText(error_id, 4)) +
+         " to the status";
 }
 
 std::string share(const std::string& what, unsigned part, unsigned whole)
@@ -67,6 +66,17 @@ void Liveness::watchFrom(TimePoint time)
 void Liveness::deafUntil(TimePoint time)
 {
   deaf_until_ = time;
+  silent_until_ = time;
+}
+
+void Liveness::heard()
+{
+  silent_until_ = TimePoint();
+}
+
+bool Liveness::mayBeDeaf(TimePoint now) const
+{
+  return now < silent_until_;
 }
 
 void Liveness::notWatching(TimePoint now, Duration duration)
@@ -82,6 +92,7 @@ void Liveness::complete(TimePoint now)
   refusal_ = 0;
   misses_ = 0;
   answers_some_ = false;
+  heard();
   dataRead();
 }
 

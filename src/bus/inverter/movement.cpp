@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {

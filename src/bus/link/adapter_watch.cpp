@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/link/adapter_watch.h"
 
-#include <cmath>
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -12,11 +12,6 @@ namespace
 {
 /// What a chip that delivers at once shows, and one more.
 constexpr double LONGEST_S = 0.002;
-
-std::string milliseconds(Duration duration)
-{
-  return std::to_string(std::lround(toSeconds(duration) * 1e3)) + " ms";
-}
 }  // namespace
 
 void AdapterWatch::note(const std::optional<wire::AdapterLatency>& latency)
@@ -35,13 +30,14 @@ std::optional<Finding> AdapterWatch::finding() const
   {
     return std::nullopt;
   }
-  return Finding{ Level::Warn, "the adapter holds bytes back for up to " + milliseconds(latency_->latency) +
+  return Finding{ Level::Warn, "the adapter holds bytes back for up to " +
+                                   util::millisecondsText(latency_->latency, 0) +
                                    ", which every exchange takes longer: echo 1 | sudo tee " + latency_->file };
 }
 
 std::string AdapterWatch::text() const
 {
-  return latency_ ? milliseconds(latency_->latency) : "not told by its driver";
+  return latency_ ? util::millisecondsText(latency_->latency, 0) : "not told by its driver";
 }
 }  // namespace bus
 }  // namespace inverter_bus

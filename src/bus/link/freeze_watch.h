@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

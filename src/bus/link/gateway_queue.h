@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/report/refusal_log.h"
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -70,7 +70,7 @@ void RefusalLog::accepted(std::size_t inverter)
 std::string RefusalLog::deadManReason(std::size_t inverter, double command_timeout) const
 {
   const Refused& refused = since_accepted_[inverter];
-  const std::string timeout = wire::shownNumber(command_timeout, 9) + " s (command_timeout)";
+  const std::string timeout = util::numberText(command_timeout, 9) + " s (command_timeout)";
   if (refused.count == 0)
   {
     return "no command for " + timeout;
@@ -83,7 +83,7 @@ std::string RefusalLog::deadManReason(std::size_t inverter, double command_timeo
 
 std::string refusedVelocity(double velocity, std::uint16_t error_id, const std::string& reason)
 {
-  return error_id == ERROR_OUT_OF_RANGE ? reason : "velocity " + wire::shownNumber(velocity, 9) + ": " + reason;
+  return error_id == ERROR_OUT_OF_RANGE ? reason : "velocity " + util::numberText(velocity, 9) + ": " + reason;
 }
 }  // namespace bus
 }  // namespace inverter_bus

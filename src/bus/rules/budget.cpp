@@ -3,10 +3,9 @@
 #include "bus/rules/budget.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "bus/rules/scheduler.h"
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -17,14 +16,6 @@ namespace
 // Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
 constexpr double RETURN_S = 3.0;
 constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
-
-std::string milliseconds(Duration duration)
-{
-  std::ostringstream text;
-  text.precision(1);
-  text << std::fixed << toSeconds(duration) * 1e3 << " ms";
-  return text.str();
-}
 }  // namespace
 
 namespace
@@ -209,8 +200,8 @@ std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Durati
   {
     return std::nullopt;
   }
-  return Finding{ Level::Warn, name + ": its own communication time-out of " + milliseconds(timeout) +
-                                   " can't be met for certain: up to " + milliseconds(margin) +
+  return Finding{ Level::Warn, name + ": its own communication time-out of " + util::millisecondsText(timeout) +
+                                   " can't be met for certain: up to " + util::millisecondsText(margin) +
                                    " may lie between two frames; raise it, or the baud rate, or take fewer inverters" };
 }
 
@@ -227,9 +218,10 @@ Budget::Figures Budget::figures() const
 
 std::string Budget::behindGateway() const
 {
-  return configuration_.bus.modbus_tcp ? " and up to " + milliseconds(seconds(configuration_.bus.gateway_timeout)) +
-                                             " for each inverter that does not answer"
-                                       : "";
+  return configuration_.bus.modbus_tcp
+             ? " and up to " + util::millisecondsText(seconds(configuration_.bus.gateway_timeout)) +
+                   " for each inverter that does not answer"
+             : "";
 }
 
 Duration Budget::longestReturn(Duration block, std::size_t offline)
@@ -247,21 +239,21 @@ std::optional<Finding> Budget::returnBehindGateway() const
     return std::nullopt;
   }
   return Finding{ Level::Ok,
-                  "an inverter that was offline may need up to " + wire::shownDuration(longestReturn(block, 1)) +
+                  "an inverter that was offline may need up to " + util::durationText(longestReturn(block, 1)) +
                       " (times the number of those that are offline) to be back, if a silent station keeps the "
                       "gateway for gateway_timeout (" +
-                      wire::shownDuration(block) + "); " + wire::shownDuration(longestReturn({}, 1)) +
-                      " if it does so for " + wire::shownDuration(seconds(SHORT_BLOCK_S)) + " at most" };
+                      util::durationText(block) + "); " + util::durationText(longestReturn({}, 1)) +
+                      " if it does so for " + util::durationText(seconds(SHORT_BLOCK_S)) + " at most" };
 }
 
 std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
-  findings.push_back({ Level::Ok, "bus budget: status cycle " + milliseconds(cycle()) + ", worst stop latency " +
-                                      milliseconds(worstStop()) + behindGateway() +
+  findings.push_back({ Level::Ok, "bus budget: status cycle " + util::millisecondsText(cycle()) +
+                                      ", worst stop latency " + util::millisecondsText(worstStop()) + behindGateway() +
                                       " (plus the ramp), longest gap between two frames to "
                                       "an inverter " +
-                                      milliseconds(longestGap()) });
+                                      util::millisecondsText(longestGap()) });
   if (const auto finding = returnBehindGateway())
   {
     findings.push_back(*finding);
@@ -271,8 +263,9 @@ std::vector<Finding> Budget::findings() const
     const InverterConfig& config = configuration_.bus.inverters[index];
     if (config.command_timeout > 0.0 && seconds(config.command_timeout) < cycle())
     {
-      findings.push_back({ Level::Warn, config.name + ": command_timeout " + wire::shownNumber(config.command_timeout) +
-                                            " s is shorter than a status cycle (" + milliseconds(cycle()) + ")" });
+      findings.push_back({ Level::Warn, config.name + ": command_timeout " + util::numberText(config.command_timeout) +
+                                            " s is shorter than a status cycle (" + util::millisecondsText(cycle()) +
+                                            ")" });
     }
     const drive::CommunicationLoss& loss = configuration_.drives[index].profile().communication_loss;
     if (loss.timeout_parameter.empty() && loss.assumed_timeout > 0.0)

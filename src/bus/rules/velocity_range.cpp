@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wire/shown_number.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -62,7 +62,7 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
 {
   if (!std::isfinite(velocity))
   {
-    return refused("velocity " + wire::shownNumber(velocity, 9) + " is not a finite number");
+    return refused("velocity " + util::numberText(velocity, 9) + " is not a finite number");
   }
   if (stops(velocity))
   {
@@ -71,9 +71,9 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
   if (beyond(velocity) && config_.limit == Limit::Refuse)
   {
     const std::string least =
-        config_.min_velocity > 0.0 ? wire::shownNumber(config_.min_velocity, 9) + " to " : "up to ";
-    return refused("velocity " + wire::shownNumber(velocity, 9) + " is out of range: 0, or " + least +
-                   wire::shownNumber(config_.max_velocity, 9) + " in either direction");
+        config_.min_velocity > 0.0 ? util::numberText(config_.min_velocity, 9) + " to " : "up to ";
+    return refused("velocity " + util::numberText(velocity, 9) + " is out of range: 0, or " + least +
+                   util::numberText(config_.max_velocity, 9) + " in either direction");
   }
   RangedVelocity ranged = ofKind(RangedVelocity::Kind::Motion);
   // The one that is clamped most gets its maximum, not what is left of it after two roundings.
@@ -82,8 +82,8 @@ RangedVelocity VelocityRange::judge(double velocity, double factor) const
   ranged.velocity = std::copysign(std::min(reduced, config_.max_velocity), velocity);
   if (nearZero(ranged.velocity))
   {
-    return refused("velocity " + wire::shownNumber(velocity, 9) + " comes near zero when all are reduced to " +
-                   wire::shownNumber(factor * 100.0, 9) + " % for the one that is clamped most");
+    return refused("velocity " + util::numberText(velocity, 9) + " comes near zero when all are reduced to " +
+                   util::numberText(factor * 100.0, 9) + " % for the one that is clamped most");
   }
   return ranged;
 }

@@ -9,7 +9,8 @@
 #include <string>
 
 #include "drive/profile/numbers.h"
-#include "wire/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -74,7 +75,7 @@ std::int64_t readBase(YamlMap& map, const Numbering& numbering, Item& item)
   if (base != std::floor(base) || base < 0.0 || base > static_cast<double>(MAX_NUMBER))
   {
     cursor->problems().add(constant->place, constant->key,
-                           "value " + formatNumber(base) + ": allowed: an integer from 0 to 65535");
+                           "value " + util::exactText(base) + ": allowed: an integer from 0 to 65535");
     return 0;
   }
   return static_cast<std::int64_t>(base);
@@ -84,7 +85,7 @@ void checkDigits(const YamlCursor& cursor, const Numbering& numbering, std::int6
 {
   if (numbering.decimal && ((number & 0xF) > 9 || ((number >> 4) & 0xF) > 9))
   {
-    cursor.complain(formatHex(static_cast<std::uint32_t>(number)) +
+    cursor.complain(util::hexNumber(static_cast<std::uint32_t>(number)) +
                     " does not exist on this drive: the last two digits count decimally (numbering.decimal)");
   }
 }
@@ -141,7 +142,8 @@ void checkEnd(const YamlMap& map, const Numbering& numbering, const Item& item)
   const std::int64_t last = static_cast<std::int64_t>(item.number) + item.size - 1;
   if (!item.missing && last > numbering.highest(item.space))
   {
-    map.cursor().complain("reaches beyond " + formatHex(static_cast<std::uint32_t>(numbering.highest(item.space))));
+    map.cursor().complain("reaches beyond " +
+                          util::hexNumber(static_cast<std::uint32_t>(numbering.highest(item.space))));
   }
 }
 
@@ -154,7 +156,7 @@ void readValues(const YamlCursor& cursor, Item& item)
     const std::int64_t highest = largestRaw(item);
     if (!raw || *raw < 0 || *raw > highest)
     {
-      meaning.complain("the raw value '" + wire::shown(key) + "': allowed: an integer from 0 to " +
+      meaning.complain("the raw value '" + util::printable(key) + "': allowed: an integer from 0 to " +
                        std::to_string(highest));
     }
     else if (value)
@@ -177,7 +179,7 @@ void readResolution(const YamlCursor& cursor, const Numbering& numbering, Item& 
   if (!(item.resolution > 0.0))
   {
     cursor.problems().add(constant->place, constant->key,
-                          "value " + formatNumber(item.resolution) + ": allowed: a number above 0");
+                          "value " + util::exactText(item.resolution) + ": allowed: a number above 0");
     item.resolution = 1.0;
   }
 }

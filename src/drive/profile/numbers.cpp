@@ -4,11 +4,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <locale>
 #include <sstream>
-
-#include "wire/shown_number.h"
 
 namespace inverter_bus
 {
@@ -145,18 +142,6 @@ std::optional<double> parseNumber(const std::string& text)
     return std::nullopt;
   }
   return value;
-}
-
-std::string formatNumber(double value)
-{
-  return wire::shownNumber(value, 12);
-}
-
-std::string formatHex(std::uint32_t value)
-{
-  char buffer[16];
-  std::snprintf(buffer, sizeof(buffer), "0x%04X", value);
-  return buffer;
 }
 
 double scaleCounts(double counts, double resolution)

@@ -18,12 +18,6 @@ std::optional<std::int64_t> parseInteger(const std::string& text);
 /// Integer as above or a decimal fraction (0.01, 1e-3). Infinity and NaN are refused.
 std::optional<double> parseNumber(const std::string& text);
 
-/// Shortest usual form: 10, 0.01, 3600.
-std::string formatNumber(double value);
-
-/// 0x1103.
-std::string formatHex(std::uint32_t value);
-
 /// \p counts of \p resolution, rounded so that 1000 counts of 0.01 are exactly 10.0.
 double scaleCounts(double counts, double resolution);
 

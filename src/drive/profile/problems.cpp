@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "inverter_bus/drive/profile.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -18,14 +18,14 @@ constexpr std::size_t MOST_LINES = 50;
 
 std::string lineOf(const std::string& where, const std::string& key, const std::string& what)
 {
-  return oneLine(where + ": " + (key.empty() ? "" : "key '" + wire::shown(key) + "': ") + what);
+  return oneLine(where + ": " + (key.empty() ? "" : "key '" + util::printable(key) + "': ") + what);
 }
 }  // namespace
 
 std::string oneLine(const std::string& text)
 {
   constexpr std::size_t LONGEST = 1000;
-  return wire::shown(text, LONGEST);
+  return util::printable(text, LONGEST);
 }
 
 void Problems::add(const std::string& where, const std::string& key, const std::string& what)

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/status_fields.h"
-#include "wire/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -29,7 +33,7 @@ void checkSteps(const std::string& name, const Sequence& sequence, const Profile
       {
         names.push_back(entry.first);
       }
-      place.complain("the step names the unknown point '" + step.point + "': allowed: " + join(names));
+      place.complain("the step names the unknown point '" + step.point + "': allowed: " + util::joined(names));
     }
     else if (step.value && *step.value > largestRaw(point->second.item))
     {
@@ -56,8 +60,8 @@ void checkSetpoint(const YamlValue& root, const Profile& profile, Problems& prob
   if (item.space == Space::Coil || item.space == Space::Operation || counts > largestRaw(item) || counts < 1.0)
   {
     locate(root, "points.frequency", problems)
-        .complain("frequency.maximum " + formatNumber(profile.maximum_frequency) + " Hz is " + formatNumber(counts) +
-                  " counts: must fit into the register");
+        .complain("frequency.maximum " + util::exactText(profile.maximum_frequency) + " Hz is " +
+                  util::exactText(counts) + " counts: must fit into the register");
   }
 }
 
@@ -67,7 +71,7 @@ void checkParameterName(const YamlValue& root, const std::string& key, const std
   if (!name.empty() && profile.parameters.count(name) == 0)
   {
     locate(root, key, problems)
-        .complain("value '" + wire::shown(name) + "': allowed: a name of the section parameters");
+        .complain("value '" + util::printable(name) + "': allowed: a name of the section parameters");
   }
 }
 
@@ -84,8 +88,8 @@ void checkUnit(const YamlValue& root, const std::string& key, const std::string&
   if (std::find(units.begin(), units.end(), unit) == units.end())
   {
     const YamlCursor place = locate(root, key, problems);
-    place.complain("value '" + wire::shown(name) + "': a parameter with the unit '" + unit +
-                   "': allowed: " + join(units));
+    place.complain("value '" + util::printable(name) + "': a parameter with the unit '" + unit +
+                   "': allowed: " + util::joined(units));
   }
 }
 
@@ -175,14 +179,11 @@ private:
     const auto has = [this](unsigned function) { return profile_.functions.count(function) != 0; };
     if (std::none_of(any_of.begin(), any_of.end(), has))
     {
-      std::string names;
-      for (const unsigned function : any_of)
-      {
-        names += (names.empty() ? "" : " or ") + formatHex(function);
-      }
+      std::vector<std::string> names;
+      std::transform(any_of.begin(), any_of.end(), std::back_inserter(names), util::hexNumber);
       const bool services = profile_.protocol == "compoway_f";
-      at(key).complain("needs " + std::string(services ? "service " : "function ") + names + ": limits." +
-                       (services ? "services" : "functions") + " lacks it");
+      at(key).complain("needs " + std::string(services ? "service " : "function ") + util::joined(names, " or ") +
+                       ": limits." + (services ? "services" : "functions") + " lacks it");
     }
   }
 
@@ -246,9 +247,9 @@ void checkParameterOverlaps(const YamlValue& root, const Profile& profile, Probl
     if (overlap(sorted[i - 1]->item, sorted[i]->item))
     {
       locate(root, "parameters." + sorted[i]->name, problems)
-          .complain("register " + formatHex(sorted[i]->item.number) + " belongs to '" + sorted[i - 1]->name + "' (" +
-                    formatHex(sorted[i - 1]->item.number) + ", " + std::to_string(sorted[i - 1]->item.size) +
-                    " words): allowed: a place of its own");
+          .complain("register " + util::hexNumber(sorted[i]->item.number) + " belongs to '" + sorted[i - 1]->name +
+                    "' (" + util::hexNumber(sorted[i - 1]->item.number) + ", " +
+                    std::to_string(sorted[i - 1]->item.size) + " words): allowed: a place of its own");
     }
   }
 }
@@ -371,7 +372,8 @@ void checkBlock(const YamlValue& root, const Profile& profile, Problems& problem
   {
     if (profile.functions.count(function) == 0)
     {
-      locate(root, "block", problems).complain("needs function " + formatHex(function) + ": limits.functions lacks it");
+      locate(root, "block", problems)
+          .complain("needs function " + util::hexNumber(function) + ": limits.functions lacks it");
     }
   }
 }

@@ -11,7 +11,8 @@
 #include "drive/profile/yaml_reader.h"
 #include "drive/profile/yaml_value.h"
 #include "inverter_bus/drive/profile.h"
-#include "wire/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -35,8 +36,8 @@ std::string profilePath(const std::string& name_or_path, const std::string& dire
     return (std::filesystem::path(directory) / (name_or_path + EXTENSION)).string();
   }
   problems.add(place.empty() ? directory : place, "drive",
-               "value '" + wire::shown(name_or_path) + "': allowed: an absolute path, or one of: " +
-                   (known.empty() ? "(no profiles in " + directory + ")" : join(known)));
+               "value '" + util::printable(name_or_path) + "': allowed: an absolute path, or one of: " +
+                   (known.empty() ? "(no profiles in " + directory + ")" : util::joined(known)));
   return "";
 }
 

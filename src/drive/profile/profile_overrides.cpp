@@ -6,7 +6,8 @@
 
 #include "drive/profile/item_reader.h"
 #include "drive/profile/yaml_reader.h"
-#include "wire/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -229,9 +230,10 @@ void confirm(YamlValue& root, const std::vector<std::string>& names, const std::
     }
     else
     {
-      problems.add(place, "confirm",
-                   "value '" + wire::shown(name) + "': " +
-                       (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + join(known)));
+      problems.add(
+          place, "confirm",
+          "value '" + util::printable(name) +
+              "': " + (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + util::joined(known)));
     }
   }
   removeNames(root, confirmed);

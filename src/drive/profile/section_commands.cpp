@@ -8,6 +8,7 @@
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/units.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -65,7 +66,7 @@ bool readNamedValue(const YamlCursor& value, const Numbering& numbering, Step& s
   if (number != std::floor(number) || number < 0.0 || number > 4294967295.0)
   {
     value.problems().add(constant->second.place, constant->second.key,
-                         "value " + formatNumber(number) + ": allowed: an integer from 0 on");
+                         "value " + util::exactText(number) + ": allowed: an integer from 0 on");
     return true;
   }
   step.value = static_cast<std::uint32_t>(number);
@@ -152,7 +153,7 @@ void readSequences(const YamlCursor& cursor, const Numbering& numbering, Profile
   {
     if (std::find(names.begin(), names.end(), name) == names.end())
     {
-      sequence.complain("unknown key: allowed: " + join(names));
+      sequence.complain("unknown key: allowed: " + util::joined(names));
       continue;
     }
     readSequence(name, sequence, numbering, profile);

@@ -8,6 +8,7 @@
 
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -68,7 +69,7 @@ void readGroup(YamlMap& root, const std::string& key, bool operation_codes, Numb
     if (operation_codes &&
         std::find(operationCodeNames().begin(), operationCodeNames().end(), name) == operationCodeNames().end())
     {
-      entry.complain("unknown key: allowed: " + join(operationCodeNames()));
+      entry.complain("unknown key: allowed: " + util::joined(operationCodeNames()));
       continue;
     }
     if (parseInteger(name) || name == "setpoint" || name == UNKNOWN || numbering.constants.count(name) != 0)

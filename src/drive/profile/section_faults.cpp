@@ -5,6 +5,7 @@
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/status_fields.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -72,7 +73,7 @@ std::string allowedRecordFields()
   {
     names.insert(entry.first);
   }
-  return join(names);
+  return util::joined(names);
 }
 
 void noteMark(const Item& item, Profile& profile)
@@ -150,7 +151,7 @@ void readRegularHistory(const YamlCursor& cursor, const Numbering& numbering, Pr
       const std::int64_t number = *first + i * stride + field.number;
       if (number + field.size - 1 > numbering.highest(Space::Register))
       {
-        cursor.complain("reaches beyond " + formatHex(0xFFFF));
+        cursor.complain("reaches beyond " + util::hexNumber(0xFFFF));
         return;
       }
       Item item = field;

@@ -5,6 +5,7 @@
 #include "drive/profile/profile_builder.h"
 
 #include "drive/profile/numbers.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -89,7 +90,8 @@ void readServices(const YamlCursor& cursor, Profile& profile)
   {
     if (known.count(service) == 0)
     {
-      cursor.complain("service " + formatHex(service) + ": allowed: 0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005");
+      cursor.complain("service " + util::hexNumber(service) +
+                      ": allowed: 0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005");
     }
   }
 }
@@ -102,7 +104,8 @@ void readFunctions(const YamlCursor& cursor, Profile& profile)
   {
     if (known.count(function) == 0)
     {
-      cursor.complain("function " + formatHex(function) + ": allowed: 0x01, 0x03, 0x05, 0x06, 0x08, 0x0F, 0x10, 0x17");
+      cursor.complain("function " + util::hexNumber(function) +
+                      ": allowed: 0x01, 0x03, 0x05, 0x06, 0x08, 0x0F, 0x10, 0x17");
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -36,11 +37,12 @@ void readRange(const YamlCursor& cursor, Parameter& parameter)
   const auto holds = registerRange(parameter.item);
   if (*lowest > *highest)
   {
-    cursor.complain("the lowest value " + formatNumber(*lowest) + " is above the highest " + formatNumber(*highest));
+    cursor.complain("the lowest value " + util::exactText(*lowest) + " is above the highest " +
+                    util::exactText(*highest));
   }
   else if (*lowest < holds.first || *highest > holds.second)
   {
-    cursor.complain("the register holds only " + formatNumber(holds.first) + " to " + formatNumber(holds.second) +
+    cursor.complain("the register holds only " + util::exactText(holds.first) + " to " + util::exactText(holds.second) +
                     ": allowed: a range inside it, words: 2 or another resolution");
   }
   else

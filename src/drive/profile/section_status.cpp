@@ -6,6 +6,7 @@
 
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/status_fields.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -51,7 +52,7 @@ std::string allowedFields()
   {
     names.insert(entry.first);
   }
-  return join(names);
+  return util::joined(names);
 }
 
 ItemRules rulesOf(FieldKind kind)

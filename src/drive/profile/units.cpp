@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <map>
 
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -77,7 +77,7 @@ std::string unitMistake(const std::string& field, const Item& item)
   {
     return "";
   }
-  return "unit '" + wire::shown(item.unit) + "': this field is shown in " + wanted + ": allowed: " + wanted +
+  return "unit '" + util::printable(item.unit) + "': this field is shown in " + wanted + ": allowed: " + wanted +
          (of_rating.empty() ? "" : ", or \"%\" with of: " + of_rating) + " (resolution is one count in that unit)";
 }
 }  // namespace drive

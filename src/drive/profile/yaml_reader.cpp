@@ -8,7 +8,8 @@
 #include <limits>
 
 #include "drive/profile/numbers.h"
-#include "wire/shown.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -39,7 +40,7 @@ void YamlCursor::reject(const std::string& allowed) const
   switch (value_->kind)
   {
     case YamlValue::Kind::Scalar:
-      complain("value '" + wire::shown(value_->text) + "'" + (value_->scalar.quoted ? " (a text, in quotes)" : "") +
+      complain("value '" + util::printable(value_->text) + "'" + (value_->scalar.quoted ? " (a text, in quotes)" : "") +
                ": allowed: " + allowed);
       break;
     case YamlValue::Kind::List:
@@ -113,7 +114,7 @@ std::optional<double> YamlCursor::number(double lowest, double highest) const
   // Written so that NaN fails too.
   if (!value || !(*value >= lowest && *value <= highest))
   {
-    rejectNumber("a number from " + formatNumber(lowest) + " to " + formatNumber(highest));
+    rejectNumber("a number from " + util::exactText(lowest) + " to " + util::exactText(highest));
     return std::nullopt;
   }
   return value;
@@ -168,7 +169,7 @@ std::optional<std::string> YamlCursor::choice(const std::vector<std::string>& al
 {
   if (!is(config::Scalar::Type::Text) || std::find(allowed.begin(), allowed.end(), value_->text) == allowed.end())
   {
-    reject(join(allowed));
+    reject(util::joined(allowed));
     return std::nullopt;
   }
   return value_->text;
@@ -252,7 +253,7 @@ void YamlMap::finish() const
     if (asked_.count(entry.key) == 0)
     {
       cursor_.problems().add(entry.where, cursor_.path().empty() ? entry.key : cursor_.path() + "." + entry.key,
-                             "unknown key: allowed: " + join(asked_));
+                             "unknown key: allowed: " + util::joined(asked_));
     }
   }
 }

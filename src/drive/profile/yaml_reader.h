@@ -85,18 +85,6 @@ private:
   YamlCursor cursor_;
   std::set<std::string> asked_;
 };
-
-/// "a, b, c".
-template <typename Container>
-std::string join(const Container& parts)
-{
-  std::string result;
-  for (const auto& part : parts)
-  {
-    result += (result.empty() ? "" : ", ") + part;
-  }
-  return result;
-}
 }  // namespace drive
 }  // namespace inverter_bus
 

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "util/text.h"
+
 namespace inverter_bus
 {
 namespace simulation
@@ -18,13 +20,6 @@ bool parse(const std::string& word, double& value)
   char* end = nullptr;
   value = std::strtod(word.c_str(), &end);
   return !word.empty() && *end == '\0' && std::isfinite(value);
-}
-
-std::string shortNumber(double value)
-{
-  std::ostringstream text;
-  text << value;
-  return text.str();
 }
 }  // namespace
 
@@ -69,7 +64,8 @@ double CommandWords::takeNumber(const std::string& what, double minimum, double 
   double value = 0.0;
   if (!parse(word, value) || value < minimum || value > maximum)
   {
-    throw CommandError(what + " " + word + " (allowed: " + shortNumber(minimum) + " to " + shortNumber(maximum) + ")");
+    throw CommandError(what + " " + word + " (allowed: " + util::numberText(minimum) + " to " +
+                       util::numberText(maximum) + ")");
   }
   return value;
 }

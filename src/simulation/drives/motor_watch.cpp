@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -43,9 +44,7 @@ void appendMotor(const Motor& motor, KeyValues& values)
 
 std::string twoDecimals(double value)
 {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2f", value);
-  return text;
+  return util::fixedText(value, 2);
 }
 }  // namespace simulation
 }  // namespace inverter_bus

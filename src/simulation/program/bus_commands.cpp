@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <vector>
 
 #include "inverter_bus/simulation/simulated_bus.h"
 #include "simulation/compoway/compoway_frame.h"
 #include "simulation/drives/command_words.h"
 #include "simulation/modbus/modbus_frame.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -408,12 +410,13 @@ const typename Actions::mapped_type& find(const Actions& actions, const std::str
   const auto found = actions.find(word);
   if (found == actions.end())
   {
-    std::string allowed;
+    std::vector<std::string> allowed;
+    allowed.reserve(actions.size());
     for (const auto& action : actions)
     {
-      allowed += (allowed.empty() ? "" : ", ") + action.first;
+      allowed.push_back(action.first);
     }
-    throw CommandError("unknown command " + word + " (allowed: " + allowed + ")");
+    throw CommandError("unknown command " + word + " (allowed: " + util::joined(allowed) + ")");
   }
   return found->second;
 }

@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
-#include "config/shown.h"
 #include "config/yaml.h"
 #include "simulation/program/bus_config_drives.h"
 #include "simulation/program/config_values.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -152,12 +152,12 @@ void checkUnique(const BusConfig& config)
     const std::string& name = drive.options.name;
     if (!names.insert(name).second)
     {
-      throw ConfigError("scan_list: name " + config::shown(name) +
+      throw ConfigError("scan_list: name " + util::printable(name) +
                         " is taken (allowed: each name once, not bus, help, list)");
     }
     if (!stations.insert(drive.options.station).second)
     {
-      throw ConfigError("scan_list: node " + std::to_string(drive.options.station) + " of " + config::shown(name) +
+      throw ConfigError("scan_list: node " + std::to_string(drive.options.station) + " of " + util::printable(name) +
                         " is taken (allowed: each station once)");
     }
   }
@@ -165,7 +165,7 @@ void checkUnique(const BusConfig& config)
 
 void checkModel(const DriveConfig& drive, Protocol protocol)
 {
-  const std::string name = config::shown(drive.options.name);
+  const std::string name = util::printable(drive.options.name);
   const std::vector<std::string> models = driveModels();
   if (drive.model == BY_PROFILE)
   {
@@ -178,7 +178,7 @@ void checkModel(const DriveConfig& drive, Protocol protocol)
     {
       allowed += model + ", ";
     }
-    throw ConfigError("drive: " + config::shown(drive.model) + " of " + name + " can't be simulated (allowed: " +
+    throw ConfigError("drive: " + util::printable(drive.model) + " of " + name + " can't be simulated (allowed: " +
                       allowed + "or one of them, or profile, as simulation/" + name + "/model)");
   }
   if (protocolOf(drive) != protocol)
@@ -238,9 +238,9 @@ BusConfig busConfigFromText(const std::string& yaml)
   if (!problems.empty())
   {
     const config::YamlProblem& first = problems.front();
-    throw ConfigError(config::shown((first.line > 0 ? "line " + std::to_string(first.line) + ": " : "") +
-                                        (first.path.empty() ? "" : first.path + ": ") + first.what,
-                                    1000));
+    throw ConfigError(util::printable((first.line > 0 ? "line " + std::to_string(first.line) + ": " : "") +
+                                          (first.path.empty() ? "" : first.path + ": ") + first.what,
+                                      1000));
   }
   return busConfigFromParameters(parameters);
 }

@@ -7,8 +7,8 @@
 #include <functional>
 #include <map>
 
-#include "config/shown.h"
 #include "simulation/program/config_values.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -98,7 +98,7 @@ void readDetail(const std::string& key, const Value& value, const std::string& p
   {
     allowed += ", " + known.first;
   }
-  throw ConfigError(config::shown(place, 500) + ": unknown key (allowed: " + allowed + ")");
+  throw ConfigError(util::printable(place, 500) + ": unknown key (allowed: " + allowed + ")");
 }
 
 /// The drive of that name; a new one, which the scan list doesn't know, where the map says what it is and where.
@@ -113,7 +113,7 @@ DriveConfig& driveFor(const std::string& name, const Value& details, const LineS
   if (details.map.count("model") == 0 || details.map.count("station") == 0)
   {
     throw ConfigError(
-        "simulation/" + config::shown(name) +
+        "simulation/" + util::printable(name) +
         ": no inverter of the scan list (allowed: their names; or any name, with model and station, for a "
         "further drive on the line)");
   }

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "config/scalar.h"
-#include "config/shown.h"
 #include "inverter_bus/simulation/bus_config.h"
+#include "util/printable.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -26,7 +27,7 @@ std::string describe(const Value* value)
     case Value::Type::Number:
       return config::numberInYaml(value->number);
     case Value::Type::Text:
-      return config::shown(value->text);
+      return util::printable(value->text);
     case Value::Type::List:
       return "a list";
     case Value::Type::Map:
@@ -50,7 +51,7 @@ std::string withHint(const Value* value, const std::string& allowed)
 
 void refuse(const std::string& place, const Value* value, const std::string& allowed)
 {
-  throw ConfigError(config::shown(place, 500) + ": " + describe(value) + " (allowed: " + allowed + ")");
+  throw ConfigError(util::printable(place, 500) + ": " + describe(value) + " (allowed: " + allowed + ")");
 }
 
 const Value* find(const Value* map, const std::string& key)
@@ -102,12 +103,7 @@ int toInteger(const Value* value, const std::string& place, const std::set<int>&
                      allowed.count(static_cast<int>(value->integer)) != 0;
   if (!known)
   {
-    std::string list;
-    for (const int number : allowed)
-    {
-      list += (list.empty() ? "" : ", ") + std::to_string(number);
-    }
-    refuse(place, value, list);
+    refuse(place, value, util::joined(allowed));
   }
   return static_cast<int>(value->integer);
 }

@@ -19,7 +19,7 @@ constexpr double REPLY_SLACK_CHARACTERS = 16.0;
 constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
 }  // namespace
 
-Line::Line(Port& port, Protocol& protocol, Clock& clock, LineTiming timing)
+Line::Line(Port& port, Protocol& protocol, util::Clock& clock, LineTiming timing)
   : port_(port), protocol_(protocol), clock_(clock), timing_(timing)
 {
   if (protocol_.gatewayGapCharacters() > 0.0)

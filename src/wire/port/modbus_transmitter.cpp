@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-// The only file that knows libmodbus. Used of it: sending with CRC and the RTS switching. Not used: its connect, which
+// The only file that knows libmodbus, which is here since the package is to send through it (contract, section 1).
+// Used of it: sending with CRC and the RTS switching. Not used: its connect, which
 // fails on a pseudo-terminal with parity, and its receiving, which takes any late reply of the same shape for the
 // answer.
 
@@ -21,20 +22,6 @@ namespace
 constexpr std::size_t CRC_LENGTH = 2;
 /// For a port whose buffer is full: more than any frame of a healthy one.
 constexpr std::chrono::milliseconds WRITE_SLACK{ 50 };
-
-char parityLetter(Parity parity)
-{
-  switch (parity)
-  {
-    case Parity::Even:
-      return 'E';
-    case Parity::Odd:
-      return 'O';
-    case Parity::None:
-      break;
-  }
-  return 'N';
-}
 
 class ModbusTransmitter : public Transmitter
 {

@@ -4,14 +4,26 @@
 
 #include <boost/asio/ip/address.hpp>
 #include <boost/system/error_code.hpp>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <utility>
+
+#include "util/steady_condition.h"
 
 namespace inverter_bus
 {
 namespace wire
 {
+struct NameLookup::Lookup
+{
+  std::mutex mutex;
+  util::SteadyCondition ended;
+  bool over = false;
+  std::vector<std::string> addresses;
+  std::string error;
+};
+
 NameLookup::NameLookup(std::string host, NameResolver resolver) : host_(std::move(host)), resolver_(std::move(resolver))
 {
 }
@@ -24,41 +36,46 @@ std::vector<std::string> NameLookup::find(TimePoint deadline, std::string& error
   {
     return { host_ };
   }
-  if (!pending_.valid() && !start(error))
+  if (!pending_ && !start(error))
   {
     return {};
   }
-  if (pending_.wait_until(deadline) != std::future_status::ready)
+  const std::shared_ptr<Lookup> lookup = pending_;
+  std::unique_lock<std::mutex> lock(lookup->mutex);
+  if (!lookup->ended.waitUntil(lock, deadline, [&lookup] { return lookup->over; }))
   {
     error = "no answer yet to the look-up of its name";
     return {};
   }
-  Found found = pending_.get();
-  error = found.error;
-  return std::move(found.addresses);
+  pending_ = nullptr;
+  error = lookup->error;
+  return std::move(lookup->addresses);
 }
 
 bool NameLookup::goesOn() const
 {
-  return pending_.valid();
+  return pending_ != nullptr;
 }
 
 bool NameLookup::start(std::string& error)
 {
   try
   {
-    std::promise<Found> promise;
-    pending_ = promise.get_future();
-    std::thread([promise = std::move(promise), host = host_, resolver = resolver_]() mutable {
-      Found found;
-      found.addresses = resolver(host, found.error);
-      promise.set_value(std::move(found));
+    pending_ = std::make_shared<Lookup>();
+    std::thread([lookup = pending_, host = host_, resolver = resolver_] {
+      std::string problem;
+      std::vector<std::string> addresses = resolver(host, problem);
+      const std::lock_guard<std::mutex> guard(lookup->mutex);
+      lookup->addresses = std::move(addresses);
+      lookup->error = std::move(problem);
+      lookup->over = true;
+      lookup->ended.notifyOne();
     }).detach();
     return true;
   }
   catch (const std::system_error& refused)
   {
-    pending_ = {};
+    pending_ = nullptr;
     error = refused.what();
     return false;
   }

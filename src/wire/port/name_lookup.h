@@ -3,7 +3,7 @@
 #ifndef INVERTER_BUS_WIRE_NAME_LOOKUP_H
 #define INVERTER_BUS_WIRE_NAME_LOOKUP_H
 
-#include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,18 +28,14 @@ public:
   bool goesOn() const;
 
 private:
-  struct Found
-  {
-    std::vector<std::string> addresses;
-    std::string error;
-  };
+  struct Lookup;
 
   bool start(std::string& error);
 
   std::string host_;
   NameResolver resolver_;
-  /// Valid while a look-up goes on or its result has not been taken.
-  std::future<Found> pending_;
+  /// While a look-up goes on or its result has not been taken. Its thread has a share in it, for it may outlive this.
+  std::shared_ptr<Lookup> pending_;
 };
 }  // namespace wire
 }  // namespace inverter_bus

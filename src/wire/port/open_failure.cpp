@@ -17,6 +17,8 @@
 #include <memory>
 #include <vector>
 
+#include "util/text.h"
+
 namespace inverter_bus
 {
 namespace wire
@@ -78,18 +80,15 @@ std::vector<std::string> namesBeside(const std::string& device)
 std::string beside(const std::string& device)
 {
   const std::vector<std::string> names = namesBeside(device);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), MOST_NAMES); ++i)
-  {
-    text += (i == 0 ? "" : ", ") + names[i];
-  }
+  const std::vector<std::string> first(names.begin(),
+                                       names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), MOST_NAMES)));
   const std::string more =
       names.size() > MOST_NAMES ? " and " + std::to_string(names.size() - MOST_NAMES) + " more" : "";
   if (names.empty())
   {
     return ": plug it in, or check its name";
   }
-  return ": " + device + " is missing, " + text + more + (names.size() > 1 ? " are" : " is") +
+  return ": " + device + " is missing, " + util::joined(first) + more + (names.size() > 1 ? " are" : " is") +
          " there (a name from /dev/serial/by-id stays)";
 }
 

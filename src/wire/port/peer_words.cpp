@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -60,7 +60,7 @@ std::string PeerWords::text() const
       line += ' ';
     }
   }
-  return shown(line);
+  return util::printable(line);
 }
 }  // namespace wire
 }  // namespace inverter_bus

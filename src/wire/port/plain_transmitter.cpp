@@ -4,8 +4,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <thread>
 
+#include "inverter_bus/util/clock.h"
 #include "wire/port/poll_descriptor.h"
 #include "wire/port/transmitter.h"
 
@@ -47,7 +47,7 @@ public:
     const bool written = writeAll(frame, end + WRITE_SLACK);
     if (switch_rts_)
     {
-      std::this_thread::sleep_until(end);
+      util::SteadyClock().sleepUntil(end);
     }
     return setTransmitting(false) && written;
   }

@@ -3,7 +3,7 @@
 #ifndef INVERTER_BUS_WIRE_POLL_DESCRIPTOR_H
 #define INVERTER_BUS_WIRE_POLL_DESCRIPTOR_H
 
-#include "inverter_bus/wire/clock.h"
+#include "inverter_bus/util/clock.h"
 
 namespace inverter_bus
 {

@@ -12,6 +12,20 @@ unsigned bitsPerCharacter(const SerialSettings& settings)
   return 1 + settings.data_bits + (settings.parity == Parity::None ? 0 : 1) + settings.stop_bits;
 }
 
+char parityLetter(Parity parity)
+{
+  switch (parity)
+  {
+    case Parity::Even:
+      return 'E';
+    case Parity::Odd:
+      return 'O';
+    case Parity::None:
+      break;
+  }
+  return 'N';
+}
+
 Duration timeOnLine(const SerialSettings& settings, std::size_t count)
 {
   return seconds(static_cast<double>(count * bitsPerCharacter(settings)) / settings.baud_rate);

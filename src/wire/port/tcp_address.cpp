@@ -8,7 +8,7 @@
 #include <cctype>
 
 #include "inverter_bus/wire/tcp_port.h"
-#include "wire/shown.h"
+#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -45,7 +45,7 @@ std::string checkHost(const std::string& host, bool in_brackets)
   if (in_brackets)
   {
     boost::asio::ip::make_address_v6(host, refused);
-    return refused ? "'" + shown(host) + "' is no IPv6 address" : "";
+    return refused ? "'" + util::printable(host) + "' is no IPv6 address" : "";
   }
   if (host.empty())
   {
@@ -53,7 +53,7 @@ std::string checkHost(const std::string& host, bool in_brackets)
   }
   if (!std::all_of(host.begin(), host.end(), mayStandInName) || host.size() > LONGEST_HOST_NAME)
   {
-    return "'" + shown(host) + "' is no host name";
+    return "'" + util::printable(host) + "' is no host name";
   }
   if (looksLikeIpv4(host))
   {
@@ -121,7 +121,8 @@ std::optional<TcpAddress> parseTcpAddress(const std::string& text, std::uint16_t
   const auto port = parts->rest[0] == ':' ? parsePort(parts->rest.substr(1)) : std::nullopt;
   if (!port)
   {
-    error = "behind the host comes a colon and a port number from 1 to 65535, not '" + shown(parts->rest) + "'";
+    error =
+        "behind the host comes a colon and a port number from 1 to 65535, not '" + util::printable(parts->rest) + "'";
     return std::nullopt;
   }
   return TcpAddress{ parts->host, *port };

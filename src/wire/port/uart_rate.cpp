@@ -9,6 +9,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "util/text.h"
+
 namespace inverter_bus
 {
 namespace wire
@@ -40,11 +42,6 @@ std::string refusal(unsigned baud_rate)
 {
   return "it does not take the baud rate " + std::to_string(baud_rate) + ": ";
 }
-
-std::string shown(double rate)
-{
-  return std::to_string(std::lround(rate));
-}
 }  // namespace
 
 std::optional<unsigned> uartClock(const std::string& device, const std::string& sysfs)
@@ -62,7 +59,7 @@ std::string judgeUartRate(unsigned clock, unsigned baud_rate, unsigned actual)
   if (baud_rate > fastest * (1.0 + KERNEL_TOLERANCE))
   {
     return refusal(baud_rate) + "its UART stays at " + std::to_string(actual) +
-           ", its fastest rate and the next one that works is " + shown(fastest);
+           ", its fastest rate and the next one that works is " + util::numberText(std::round(fastest));
   }
   const double divisor = std::max(1.0, std::round(fastest / baud_rate));
   if (near(fastest / divisor, baud_rate))
@@ -71,8 +68,9 @@ std::string judgeUartRate(unsigned clock, unsigned baud_rate, unsigned actual)
   }
   const double faster = fastest / std::max(1.0, std::floor(fastest / baud_rate));
   const double slower = fastest / std::ceil(fastest / baud_rate);
-  return refusal(baud_rate) + "its UART would run at " + shown(fastest / divisor) + "; the next rates that work are " +
-         shown(slower) + " and " + shown(faster);
+  return refusal(baud_rate) + "its UART would run at " + util::numberText(std::round(fastest / divisor)) +
+         "; the next rates that work are " + util::numberText(std::round(slower)) + " and " +
+         util::numberText(std::round(faster));
 }
 
 std::string judgeRate(unsigned baud_rate, unsigned actual)

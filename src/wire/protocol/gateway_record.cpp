@@ -3,6 +3,10 @@
 #include "inverter_bus/wire/gateway_record.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
+
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -36,11 +40,6 @@ bool isIn(NumberHabit habit, unsigned habits)
 unsigned stepsBack(std::uint16_t number, std::uint16_t last)
 {
   return (last + HIGHEST_NUMBER - number) % HIGHEST_NUMBER;
-}
-
-std::string joined(const std::string& text, const std::string& more)
-{
-  return text.empty() ? more : text + " and " + more;
 }
 }  // namespace
 
@@ -318,20 +317,26 @@ bool GatewayRecord::trusted() const
 
 std::string GatewayRecord::quirk() const
 {
-  std::string text;
+  std::vector<std::string> habits;
   const auto number = [&](NumberHabit habit, const char* words) {
-    text = isIn(habit, wrong_numbers_) ? joined(text, words) : text;
+    if (isIn(habit, wrong_numbers_))
+    {
+      habits.emplace_back(words);
+    }
   };
   number(NumberHabit::Zero, "transaction number 0");
   number(NumberHabit::PlusOne, "the transaction number plus 1");
   number(NumberHabit::Swapped, "the transaction number with its two bytes exchanged");
   const auto unit = [&](UnitHabit habit, const char* words) {
-    text = (static_cast<unsigned>(habit) & wrong_units_) != 0 ? joined(text, words) : text;
+    if ((static_cast<unsigned>(habit) & wrong_units_) != 0)
+    {
+      habits.emplace_back(words);
+    }
   };
   unit(UnitHabit::Zero, "unit 0");
   unit(UnitHabit::One, "unit 1");
   unit(UnitHabit::Last, "unit 255");
-  return text.empty() ? text : "its replies bear " + text + " instead of what was asked";
+  return habits.empty() ? "" : "its replies bear " + util::joined(habits, " and ") + " instead of what was asked";
 }
 
 std::string GatewayRecord::mustReopen(TimePoint now) const

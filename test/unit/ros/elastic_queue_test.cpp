@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <boost/make_shared.hpp>
 
-#include "ros/steady_event.h"
+#include "util/steady_event.h"
 
 namespace inverter_bus
 {
@@ -48,10 +48,10 @@ ros::CallbackInterfacePtr callback(const std::function<void()>& function)
 
 TEST(ElasticQueueTest, waitingCallbacksDoNotDelayAnother)
 {
-  SteadyEvent release;
-  SteadyEvent ran;
+  util::SteadyEvent release;
+  util::SteadyEvent ran;
   std::atomic<int> waiting{ 0 };
-  SteadyEvent all_wait;
+  util::SteadyEvent all_wait;
   ElasticQueue queue(64);
   for (int i = 0; i < 50; ++i)
   {
@@ -72,7 +72,7 @@ TEST(ElasticQueueTest, waitingCallbacksDoNotDelayAnother)
 
 TEST(ElasticQueueTest, beyondItsBoundCallbacksWaitForAFreeThread)
 {
-  SteadyEvent release;
+  util::SteadyEvent release;
   std::atomic<int> ran{ 0 };
   ElasticQueue queue(2);
   for (int i = 0; i < 10; ++i)
@@ -90,8 +90,8 @@ TEST(ElasticQueueTest, beyondItsBoundCallbacksWaitForAFreeThread)
 
 TEST(ElasticQueueTest, threadsThatAreNotNeededEnd)
 {
-  SteadyEvent release;
-  SteadyEvent all_wait;
+  util::SteadyEvent release;
+  util::SteadyEvent all_wait;
   std::atomic<int> waiting{ 0 };
   ElasticQueue queue(64);
   for (int i = 0; i < 30; ++i)
@@ -117,9 +117,9 @@ TEST(ElasticQueueTest, threadsThatAreNotNeededEnd)
 
 TEST(ElasticQueueTest, aRemovedOwnersCallbacksNeitherRunNorAreRunning)
 {
-  SteadyEvent started;
-  SteadyEvent release;
-  SteadyEvent dropped;
+  util::SteadyEvent started;
+  util::SteadyEvent release;
+  util::SteadyEvent dropped;
   std::atomic<bool> finished{ false };
   std::atomic<bool> ran{ false };
   ElasticQueue queue(1);
@@ -131,7 +131,7 @@ TEST(ElasticQueueTest, aRemovedOwnersCallbacksNeitherRunNorAreRunning)
                     1);
   ASSERT_TRUE(started.waitFor(PATIENCE));
   {
-    const std::shared_ptr<SteadyEvent> guard(&dropped, [](SteadyEvent* event) { event->set(); });
+    const std::shared_ptr<util::SteadyEvent> guard(&dropped, [](util::SteadyEvent* event) { event->set(); });
     queue.addCallback(callback([&ran, guard] { ran = true; }), 1);
   }
   std::thread remover([&] {
@@ -147,9 +147,9 @@ TEST(ElasticQueueTest, aRemovedOwnersCallbacksNeitherRunNorAreRunning)
 
 TEST(ElasticQueueTest, removingOneOwnerDoesNotTouchAnother)
 {
-  SteadyEvent release;
-  SteadyEvent ran;
-  SteadyEvent started;
+  util::SteadyEvent release;
+  util::SteadyEvent ran;
+  util::SteadyEvent started;
   ElasticQueue queue(1);
   queue.addCallback(callback([&] {
                       started.set();
@@ -165,7 +165,7 @@ TEST(ElasticQueueTest, removingOneOwnerDoesNotTouchAnother)
 
 TEST(ElasticQueueTest, aCallbackMayRemoveItsOwnOwner)
 {
-  SteadyEvent done;
+  util::SteadyEvent done;
   ElasticQueue queue(4);
   queue.addCallback(callback([&] {
                       queue.removeByID(5);
@@ -187,8 +187,8 @@ TEST(ElasticQueueTest, aCallbackThatIsNotReadyIsTriedAgain)
 
 TEST(ElasticQueueTest, shutdownDropsWhatWaitsAndTakesNothingMore)
 {
-  SteadyEvent started;
-  SteadyEvent release;
+  util::SteadyEvent started;
+  util::SteadyEvent release;
   std::atomic<bool> ran{ false };
   ElasticQueue queue(1);
   queue.addCallback(callback([&] {

@@ -30,7 +30,7 @@ TEST_F(LineLateReply, aLostRequestMayNotBeRepeatedForASecond)
 }
 
 /// Time goes on between any two looks at it, as it does outside of tests.
-class RunningClock : public Clock
+class RunningClock : public util::Clock
 {
 public:
   TimePoint now() const override

@@ -62,15 +62,6 @@ TEST(LineTiming, aPauseThatIsGivenIsWaitedForAndNoLessThanAGap)
   EXPECT_EQ(microseconds(100000), rounded(LineTiming(1200, 11, milliseconds(100)).patience(3.5)));
   EXPECT_EQ(microseconds(32083), rounded(LineTiming(1200, 11, milliseconds(10)).patience(3.5)));
 }
-
-TEST(SteadyClock, sleepsUntilThenAndNotLonger)
-{
-  SteadyClock clock;
-  const TimePoint time = clock.now() + milliseconds(2);
-  clock.sleepUntil(time);
-  EXPECT_GE(clock.now(), time);
-  clock.sleepUntil(time - milliseconds(1));
-}
 }  // namespace
 }  // namespace wire
 }  // namespace inverter_bus

@@ -427,7 +427,7 @@ TEST_F(SerialPortTest, carriesALine)
 {
   const auto port = makeSerialPort(settings_);
   const auto protocol = makeModbusRtu();
-  SteadyClock clock;
+  util::SteadyClock clock;
   Line line(*port, *protocol, clock, LineTiming(settings_.baud_rate, bitsPerCharacter(settings_)));
   ASSERT_EQ(OpenResult::Opened, line.open(error_)) << error_;
   const Bytes request = withCrc("01 03 00 00 00 01");

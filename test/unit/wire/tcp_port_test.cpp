@@ -728,7 +728,7 @@ class TcpPortLine : public ConnectedTcpPort
 protected:
   Reply exchange(Protocol& protocol, const Request& request)
   {
-    SteadyClock clock;
+    util::SteadyClock clock;
     Line line(*port_, protocol, clock, LineTiming(115200, 10, milliseconds(2000)));
     return line.exchange(request);
   }
@@ -812,7 +812,7 @@ TEST_F(TcpPortLine, carriesRtuFramesInPieces)
 {
   BytewisePort port(*port_, peer_, withCrc("01 03 04 12 34 56 78"));
   const auto protocol = makeModbusRtu();
-  SteadyClock clock;
+  util::SteadyClock clock;
   Line line(port, *protocol, clock, LineTiming(115200, 10, milliseconds(2000)));
   const Reply reply = line.exchange(readRequest());
   EXPECT_EQ(Outcome::Ok, reply.outcome);

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
+#include "simulation/drives/motor_watch.h"
 #include "simulation/drives/toshiba/toshiba_numbers.h"
 #include "simulation/drives/toshiba/toshiba_vfs15.h"
+#include "util/text.h"
 
 namespace inverter_bus
 {
@@ -22,20 +23,6 @@ namespace
 const std::set<int> TRIP_CODES = { 1,  2,  3,  4,  5,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20,
                                    21, 22, 23, 24, 26, 27, 28, 29, 30, 32, 34, 40, 41, 45, 46, 47, 50, 51,
                                    52, 53, 55, 58, 62, 63, 64, 65, 69, 71, 72, 73, 84, 85, 86, 87 };  // p. 63
-
-std::string number(double value)
-{
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2f", value);
-  return text;
-}
-
-std::string hexadecimal(std::uint16_t word)
-{
-  char text[8];
-  std::snprintf(text, sizeof(text), "%04X", static_cast<unsigned int>(word));
-  return text;
-}
 }  // namespace
 
 Refusal ToshibaVfs15::trip(int code, TimePoint now)
@@ -59,7 +46,7 @@ Refusal ToshibaVfs15::takeOverAtPanel(double hertz, TimePoint now)
   const double size = std::abs(hertz);
   if (size > this->hertz(FH))
   {
-    return "above the maximum frequency FH = " + number(this->hertz(FH)) + " Hz";
+    return "above the maximum frequency FH = " + twoDecimals(this->hertz(FH)) + " Hz";
   }
   memory_.commission(memory_.at(FA08), 1);
   if (hertz != 0.0)
@@ -176,24 +163,24 @@ void ToshibaVfs15::describeMotor(KeyValues& values) const
   const auto flag = [&add](const char* key, bool value) { add(key, value ? "1" : "0"); };
   const double frequency = motor_.frequency();
   add("model", model_.name);
-  add("frequency", number(std::abs(frequency)));
+  add("frequency", twoDecimals(std::abs(frequency)));
   add("direction", frequency == 0.0 ? "0" : (frequency > 0.0 ? "1" : "-1"));
-  add("target", number(motor_.target()));
+  add("target", twoDecimals(motor_.target()));
   flag("running", motor_.turning());
   add("ramp", motor_.accelerating() ? "accelerating" : (motor_.decelerating() ? "decelerating" : "none"));
-  add("command", hexadecimal(ram_.at(FA00)));
+  add("command", util::hexText(ram_.at(FA00), 4));
   flag("run_command", runCommand());
   flag("run_effective", runs());
-  add("reference", number(busFrequency()));
+  add("reference", twoDecimals(busFrequency()));
   flag("tripped", tripped_);
   add("trip", std::to_string(tripped_ ? trips_.front() : 0));
   add("last_trip", std::to_string(trips_.front()));
   add("trips", std::to_string(trip_count_));
-  add("alarms", hexadecimal(alarms()));
-  add("current", number(current()));
-  add("load", number(motor_.load()));
-  add("dc_voltage", number(motor_.dcVoltage()));
-  add("temperature", number(motor_.temperature()));
+  add("alarms", util::hexText(alarms(), 4));
+  add("current", twoDecimals(current()));
+  add("load", twoDecimals(motor_.load()));
+  add("dc_voltage", twoDecimals(motor_.dcVoltage()));
+  add("temperature", twoDecimals(motor_.temperature()));
   add("command_source", std::to_string(commandSource()));
   add("frequency_source", std::to_string(frequencySource()));
   flag("panel", local());

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_BUS_STATE_H
+#define INVERTER_BUS_BUS_BUS_STATE_H
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bus/inverter/inverter.h"
+#include "bus/link/connection_watch.h"
+#include "bus/link/gateway_queue.h"
+#include "bus/link/link_watch.h"
+#include "bus/report/group_error.h"
+#include "bus/report/line_watch.h"
+#include "bus/report/load_meter.h"
+#include "bus/report/outbox.h"
+#include "bus/report/refusal_log.h"
+#include "bus/rules/budget.h"
+#include "bus/rules/scheduler.h"
+#include "inverter_bus/bus/types.h"
+#include "inverter_bus/wire/line.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What the activities of one bus share. Whoever changes what is the business of one activity only, does it there.
+struct BusState
+{
+  BusState(const Configuration& the_configuration, const wire::Line& the_line);
+
+  const Configuration& configuration;
+  /// Only questions without side effects, and only from what the bus thread calls; what users ask for and what is told to them
+  /// knows of the line what line_watch has copied.
+  const wire::Line& line;
+  /// Of the configuration alone: it does not change while the bus runs.
+  const Budget::Figures budget;
+  /// In node order.
+  std::vector<std::unique_ptr<Inverter>> inverters;
+  Scheduler scheduler;
+  Outbox outbox;
+  LoadMeter meter;
+  LineWatch line_watch;
+  RefusalLog refusals;
+  GroupError group_error;
+
+  // the way to the drives
+  GatewayQueue gateway;
+  ConnectionWatch connection;
+  LinkWatch link;
+  bool connected = false;
+  TimePoint opened_at;
+  /// The exchange that has just ended was not answered, and says nothing: an older request was unanswered.
+  bool behind_another = false;
+  /// A broadcast went while the gateway was kept: no other one meanwhile (contract, 8.8).
+  bool broadcast_waits = false;
+
+  CommandId next_command = 1;
+  std::uint16_t loopback_number = 0;
+  /// Station of the exchange in flight, or of the last one.
+  std::uint8_t last_node = 0;
+  /// Of the last exchange; 0: it was answered.
+  std::uint16_t last_error = 0;
+
+  bool shutting_down = false;
+  /// Nobody asks for the next exchange any more.
+  bool ended = false;
+};
+
+/// A drive with a port of its own that has not told its status yet: to a gateway the same number means something else, so that
+/// nothing but reads goes there (contract, 8.8).
+bool untested(const Inverter& inverter);
+
+/// In the drive's own words where it has answered.
+std::string refusalText(const Inverter& inverter, std::uint16_t error_id);
+
+/// Lost or damaged: is it to be repeated? \p tries counts those of one request and begins anew after the last.
+bool repeat(const BusState& bus, int& tries, const wire::Reply& reply);
+
+/// How long each service may take: slow buses and long scan lists get more time; docs/commands.md states how much.
+ServiceBounds serviceBounds(const BusState& bus);
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_BUS_STATE_H

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus/activities/gateway_traffic.h"
+
+#include <algorithm>
+
+#include "util/text.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+GatewayTraffic::GatewayTraffic(BusState& bus, const Turns& turns) : bus_(bus), turns_(turns)
+{
+}
+
+GatewayRisk GatewayTraffic::riskOf(const InFlight& current)
+{
+  switch (current.purpose)
+  {
+    case Purpose::StopFrame:
+    case Purpose::Broadcast:
+      return GatewayRisk::Stop;
+    case Purpose::Velocity:
+      if (current.resync)
+      {
+        return GatewayRisk::None;
+      }
+      // A 0 is a stop, and its frame the one that may be in the gateway (contract, 8 and 8.8).
+      return current.moves ? GatewayRisk::Motion : GatewayRisk::Stop;
+    case Purpose::Refresh:
+    case Purpose::KeepAlive:
+    case Purpose::Setting:
+      // A setting may have taken the refresh's turn.
+      return current.pick.deadline ? GatewayRisk::Refresh : GatewayRisk::None;
+    default:
+      return GatewayRisk::None;
+  }
+}
+
+/// After each exchange: what it leaves in the gateway.
+void GatewayTraffic::note(const InFlight& current, const wire::Reply& reply)
+{
+  bus_.behind_another = false;
+  if (!bus_.gateway.active() || current.request.broadcast || reply.ticket == 0)
+  {
+    return;
+  }
+  bus_.gateway.sent(reply.sent_at, reply.ticket, current.inverter, riskOf(current), current.pick.probe);
+  const bool answered = isAnswered(reply) || reply.gateway_code != 0;
+  bus_.behind_another = !answered && bus_.gateway.behindAnother(reply.ticket);
+  if (answered)
+  {
+    bus_.gateway.answered(reply.finished_at, reply.ticket, reply.gateway_code != 0);
+  }
+  else
+  {
+    bus_.gateway.lost(reply.finished_at, reply.ticket);
+  }
+  const bool read = current.purpose == Purpose::Refresh || current.purpose == Purpose::Setting;
+  if (!isAnswered(reply) && read)
+  {
+    othersFirst(bus_.gateway.freeAt(reply.finished_at), *bus_.inverters[current.inverter]);
+  }
+}
+
+/// Whoever has kept the gateway waits until everybody else was refreshed once, counted from when it is free again: else only
+/// one exchange would go between two blocks.
+void GatewayTraffic::othersFirst(TimePoint free_at, Inverter& inverter)
+{
+  // Not where its own time-out would pass meanwhile.
+  const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
+  if (!serve_by || *serve_by > free_at + bus_.budget.cycle)
+  {
+    inverter.refresh_not_before = free_at + bus_.budget.cycle;
+  }
+}
+
+/// Once: what it does differs from what its users expect.
+void GatewayTraffic::tell()
+{
+  if (bus_.gateway.silentByNature() && !told_of_gateway_)
+  {
+    told_of_gateway_ = true;
+    bus_.outbox.log(Level::Warn, "port " + bus_.configuration.bus.port +
+                                     ": requests to a silent station are left unanswered: from now on " +
+                                     util::durationText(bus_.gateway.wait()) +
+                                     " is waited for instead of gateway_timeout");
+  }
+}
+
+/// Contract, 8.8: what follows a lost request would wait behind it, in the gateway.
+Gate GatewayTraffic::gate(TimePoint now)
+{
+  Gate gate;
+  if (!bus_.gateway.active())
+  {
+    return gate;
+  }
+  if (const auto kept = bus_.gateway.tick(now))
+  {
+    bus_.scheduler.chargeProbe(now, *kept);
+  }
+  tell();
+  gate.stops_only = !bus_.gateway.free(now);
+  gate.until = bus_.gateway.freeAt(now);
+  bus_.broadcast_waits = bus_.broadcast_waits && gate.stops_only;
+  gate.bare_probes = endangered() == nullptr;
+  return gate;
+}
+
+/// The running inverter with the shortest time-out of its own, if a silent station keeps the gateway for longer than that.
+const Inverter* GatewayTraffic::endangered() const
+{
+  const Inverter* first = nullptr;
+  Duration shortest = bus_.gateway.block();
+  for (const auto& inverter : bus_.inverters)
+  {
+    const auto own = inverter->settings.driveTimeout();
+    if (own && *own < shortest && !inverter->link.offline() && inverter->mayRun())
+    {
+      first = inverter.get();
+      shortest = *own;
+    }
+  }
+  return first;
+}
+
+/// Contract, 8.8: a stop of an inverter that may run goes in spite of what that does to its neighbours, with one WARN.
+void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
+{
+  const Inverter* const neighbour = inverter.link.silent() && !bus_.shutting_down ? endangered() : nullptr;
+  if (neighbour != nullptr && inverter.stop.takeCostly())
+  {
+    const std::string& name = neighbour->config.name;
+    bus_.outbox.log(Level::Warn,
+                    inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
+                        util::durationText(bus_.gateway.block()) + ", longer than the time-out of " + name +
+                        " itself, which runs (" + util::durationText(*neighbour->settings.driveTimeout()) +
+                        "): " + name + " may trip or stop by that; shorten the gateway's time-out");
+  }
+}
+
+/// A stop whose frame went while an older request could still set RUN goes again when that one is over: only the second one
+/// counts.
+TimePoint GatewayTraffic::stopNotBefore(TimePoint now, const Inverter& inverter) const
+{
+  if (untested(inverter))
+  {
+    return TimePoint::max();
+  }
+  const TimePoint next_frame = bus_.gateway.stopMayGoAt(now, inverter.index);
+  const auto danger = inverter.stop.pending() && inverter.stop.provisional()
+                          ? bus_.gateway.motionUntil(now, inverter.index)
+                          : std::nullopt;
+  return danger ? std::max(next_frame, *danger) : next_frame;
+}
+
+bool GatewayTraffic::zeroNeedsStop(TimePoint now, const Inverter& inverter) const
+{
+  return bus_.gateway.active() && (!bus_.gateway.free(now) || bus_.gateway.motionUntil(now, inverter.index));
+}
+
+std::vector<InverterView> GatewayTraffic::views(TimePoint now) const
+{
+  std::vector<InverterView> views;
+  views.reserve(bus_.inverters.size());
+  for (const auto& inverter : bus_.inverters)
+  {
+    views.push_back(inverter->view(now, bus_.budget.deadline_margin));
+    views.back().stop_pending = views.back().stop_pending && !untested(*inverter);
+    views.back().stop_not_before = stopNotBefore(now, *inverter);
+    views.back().refresh_unanswered = bus_.gateway.refreshUnanswered(now, inverter->index);
+  }
+  return views;
+}
+
+Duration GatewayTraffic::worstStop() const
+{
+  const Duration wire = bus_.budget.worst_stop + turns_.longestReplyDelay();
+  if (!bus_.gateway.active())
+  {
+    return wire;
+  }
+  const auto silent = std::count_if(bus_.inverters.begin(), bus_.inverters.end(), [](const auto& inverter) {
+    return inverter->link.offline() || !inverter->link.known();
+  });
+  return wire + static_cast<int>(silent) * block();
+}
+
+/// For how long a silent station keeps the gateway: as measured, or as configured until it is.
+Duration GatewayTraffic::block() const
+{
+  return bus_.gateway.block() > Duration::zero() ? bus_.gateway.block() : bus_.gateway.wait();
+}
+
+/// When an offline inverter that answers again is noticed at the latest.
+std::string GatewayTraffic::returnText() const
+{
+  if (const Inverter* const neighbour = endangered())
+  {
+    return "not while " + neighbour->config.name + " runs, whose own time-out is shorter than the gateway is kept";
+  }
+  const auto offline = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
+                                     [](const auto& inverter) { return inverter->link.offline(); });
+  return util::durationText(Budget::longestReturn(block(), static_cast<std::size_t>(offline)));
+}
+
+std::optional<Finding> GatewayTraffic::finding() const
+{
+  const bool anybody_away = std::any_of(bus_.inverters.begin(), bus_.inverters.end(),
+                                        [](const auto& inverter) { return inverter->link.offline(); });
+  const Duration allowed = seconds(bus_.configuration.bus.response_timeout);
+  if (!bus_.gateway.active() || !anybody_away || bus_.gateway.block() <= allowed)
+  {
+    return std::nullopt;
+  }
+  if (bus_.gateway.silentByNature())
+  {
+    return Finding{ Level::Warn,
+                    "the gateway leaves requests to a silent station unanswered: set a time-out in it, so "
+                    "that it says so within response_timeout" };
+  }
+  return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
+                                   util::durationText(bus_.gateway.block()) +
+                                   ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
+                                   "(1 + repeats) below response_timeout (" +
+                                   util::durationText(allowed) + ")" };
+}
+
+/// What it does to numbers and units, so that replies are told apart by their shapes alone.
+std::optional<Finding> GatewayTraffic::quirkFinding() const
+{
+  const std::string& quirk = bus_.line_watch.gatewayQuirk();
+  return quirk.empty() ? std::nullopt
+                       : std::optional<Finding>(Finding{ Level::Warn, "the gateway is used as it is: " + quirk });
+}
+}  // namespace bus
+}  // namespace inverter_bus

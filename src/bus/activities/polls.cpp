@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus/activities/polls.h"
+
+#include <algorithm>
+
+#include "bus/report/inverter_report.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences)
+  : bus_(bus), turns_(turns), guard_(guard), stops_(stops), absences_(absences)
+{
+}
+
+InFlight Polls::compose(TimePoint now, const Pick& pick)
+{
+  Inverter& inverter = *bus_.inverters[pick.inverter];
+  InFlight current;
+  current.pick = pick;
+  current.inverter = pick.inverter;
+  current.purpose = Purpose::Refresh;
+  const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
+  drive::ReadBlock block = inverter.refresh.next(now);
+  current.request = inverter.drive.read(inverter.config.node, block);
+  while (!resync && !bus_.line.mayAsk(current.request) && inverter.refresh.skipSlow())
+  {
+    // What decides over safety does not wait a second for a temperature.
+    block = inverter.refresh.next(now);
+    current.request = inverter.drive.read(inverter.config.node, block);
+  }
+  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force; never through a gateway,
+  // which could carry them out when everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11).
+  if (!bus_.configuration.bus.gateway && !block.chosen.empty() && inverter.mayRepeatWords(now))
+  {
+    const std::vector<drive::Word> words = inverter.movement.wordsInForce();
+    const wire::Request both =
+        words.empty() ? current.request : inverter.drive.writeAndRead(inverter.config.node, words, block);
+    // After a lost 17H that shape is barred for a while, the plain read is not.
+    current.request = bus_.line.mayAsk(both) ? both : current.request;
+  }
+  std::optional<drive::ReadBlock> variant = block;
+  while (!resync && variant && !bus_.line.mayAsk(current.request))
+  {
+    // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
+    variant = inverter.drive.variantOf(*variant);
+    current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
+  }
+  const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
+  if (!resync && !bus_.line.mayAsk(current.request) && serve_by && *serve_by <= now)
+  {
+    const auto spare = guard_.spareRead(inverter);
+    current.purpose = spare ? Purpose::KeepAlive : current.purpose;
+    current.request = spare.value_or(current.request);
+  }
+  current.request = inverter.prepared(current.request);
+  return current;
+}
+
+void Polls::ended(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  // What waited in a gateway behind an older request says nothing of this inverter.
+  const bool says_nothing = bus_.behind_another && !isAnswered(reply);
+  if (!current.resync && !says_nothing)
+  {
+    inverter.liveness.noteRead(bus_.line.cost(current.request, Duration{ 0 }), reply);
+  }
+  if (isAnswered(reply))
+  {
+    inverter.refresh_tries = 0;
+    if (reply.outcome == wire::Outcome::Ok)
+    {
+      inverter.liveness.dataRead();
+    }
+    const bool more =
+        reply.outcome == wire::Outcome::Ok ? inverter.refresh.received(reply) : inverter.refresh.refused(reply);
+    if (reply.outcome == wire::Outcome::Ok && inverter.lost_writes.readAnswered())
+    {
+      bus_.outbox.log(Level::Error, inverter.config.name + ": stopped and locked: " + inverter.lost_writes.text());
+    }
+    turns_.finish(current, reply, more);
+    inverter.noteStatus(reply, more);
+    if (more)
+    {
+      actOn(reply.finished_at, inverter, inverter.wordsRead(reply.finished_at));
+    }
+    if (inverter.refresh.takeComplete())
+    {
+      judge(reply.finished_at, inverter);
+    }
+    else if (!more)
+    {
+      refusedStatus(reply, inverter);
+    }
+    return;
+  }
+  // One that has lost as many writes as make a drive offline is not asked twice.
+  const bool decided = inverter.link.offline() || inverter.liveness.needsRead();
+  if (!decided && repeat(bus_, inverter.refresh_tries, reply))
+  {
+    turns_.finish(current, reply, true);
+    return;
+  }
+  inverter.refresh.failed();
+  turns_.finish(current, reply, false);
+  const bool was_offline = inverter.link.offline();
+  absences_.noteLost(reply.finished_at, inverter, reply.error_id);
+  if (!was_offline && !inverter.link.offline() && inverter.link.known())
+  {
+    // Shows the error beside the last good values, which keep their stamp.
+    bus_.outbox.publish(reply.finished_at, inverter);
+  }
+}
+
+void Polls::keptAlive(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  // One that is lost gives the turn away.
+  turns_.finish(current, reply, isAnswered(reply));
+  if (reply.outcome == wire::Outcome::Ok)
+  {
+    inverter.liveness.dataRead();
+  }
+  if (!isAnswered(reply))
+  {
+    absences_.noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
+/// It answers, but refuses to tell: the last good values keep their stamp.
+void Polls::refusedStatus(const wire::Reply& reply, Inverter& inverter)
+{
+  if (inverter.refresh.takeRefusal() || inverter.link.offline())
+  {
+    absences_.noteRefusal(reply.finished_at, inverter, reply.error_id);
+  }
+  if (!inverter.link.offline() && inverter.link.known())
+  {
+    inverter.link.failed(reply.error_id);
+    bus_.outbox.publish(reply.finished_at, inverter);
+  }
+}
+
+void Polls::judge(TimePoint now, Inverter& inverter)
+{
+  if (!inverter.link.known())
+  {
+    bus_.outbox.log(Level::Ok, inverter.config.name + ": " + onlineText(inverter), inverter.config.name);
+  }
+  const Judgement judgement = inverter.statusComplete(now);
+  if (judgement.tripped)
+  {
+    bus_.outbox.log(Level::Error, inverter.config.name + ": tripped: " + judgement.trip_text);
+    bus_.outbox.trace(inverter.config.name + " tripped");
+  }
+  actOn(now, inverter, judgement);
+  bus_.outbox.publish(now, inverter);
+}
+
+void Polls::actOn(TimePoint now, Inverter& inverter, const Judgement& judgement)
+{
+  if (!judgement.stop_reason.empty())
+  {
+    stops_.request(now, inverter, StopMode::Decelerate, true, judgement.stop_reason);
+  }
+  else if (judgement.zero_failed)
+  {
+    stops_.request(now, inverter, StopMode::Decelerate, false, "");
+  }
+}
+}  // namespace bus
+}  // namespace inverter_bus

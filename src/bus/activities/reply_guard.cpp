@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus/activities/reply_guard.h"
+
+#include <algorithm>
+
+namespace inverter_bus
+{
+namespace bus
+{
+ReplyGuard::ReplyGuard(BusState& bus) : bus_(bus)
+{
+}
+
+/// Rule 3.9: after a time-out nothing of the same shape is asked of this station before its late reply, or a loop-back
+/// with a fresh number, has come. A stop's write is exempt: its read-back decides, or a second write after a loop-back.
+bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  if (current.request.broadcast || bus_.line.mayAsk(current.request))
+  {
+    return true;
+  }
+  const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
+  current.may_be_late = stop_write;
+  const bool last_frame = bus_.shutting_down && inverter.link.silent();
+  if (stop_write && (last_frame || !inverter.stop.wantsClearLine()))
+  {
+    return true;
+  }
+  const auto loopback =
+      inverter.loopbackUsable() ? inverter.drive.loopback(inverter.config.node, ++bus_.loopback_number) : std::nullopt;
+  if (loopback)
+  {
+    const Duration timeout = current.request.response_timeout;
+    current.request = inverter.prepared(*loopback);
+    current.request.response_timeout = timeout;
+    current.resync = true;
+    current.loopback = true;
+    return true;
+  }
+  if (current.purpose == Purpose::StopFrame)
+  {
+    return stop_write || readBackSafely(inverter, current);
+  }
+  const TimePoint allowed = std::max(bus_.line.mayAskAt(current.request), now + std::chrono::milliseconds(1));
+  if (current.purpose == Purpose::Velocity)
+  {
+    // The other members of a group don't wait for it.
+    bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, allowed,
+                            inverter.movement.target() && inverter.movement.target()->zero);
+  }
+  else if (current.purpose == Purpose::Job)
+  {
+    bus_.scheduler.postpone(current.pick.command, allowed);
+  }
+  else if (current.purpose == Purpose::Setting)
+  {
+    // The status may have another shape.
+    inverter.setting_not_before = allowed;
+  }
+  else
+  {
+    const auto serve_by =
+        current.purpose == Purpose::Refresh ? inverter.serveBy(bus_.budget.deadline_margin) : std::nullopt;
+    const bool early = serve_by && *serve_by < allowed && spareRead(inverter);
+    inverter.refresh_not_before = early ? std::max(*serve_by, now + std::chrono::milliseconds(1)) : allowed;
+  }
+  return false;
+}
+
+/// RUN that was read off in the late reply to another request is no proof: it is asked in another shape, or, where the
+/// drive has none, the write goes again until the bar has ended.
+bool ReplyGuard::readBackSafely(Inverter& inverter, InFlight& current) const
+{
+  for (auto read = inverter.drive.variantOf(*inverter.drive.runBlock()); read; read = inverter.drive.variantOf(*read))
+  {
+    wire::Request request = inverter.prepared(inverter.drive.read(inverter.config.node, *read));
+    if (bus_.line.mayAsk(request))
+    {
+      request.response_timeout = current.request.response_timeout;
+      current.request = request;
+      return true;
+    }
+  }
+  inverter.stop.writeAgain();
+  return false;
+}
+
+/// A read that no late reply can answer; nothing: this drive has none.
+std::optional<wire::Request> ReplyGuard::spareRead(const Inverter& inverter) const
+{
+  std::vector<drive::ReadBlock> reads = inverter.refresh.fastBlocks();
+  const std::vector<drive::ReadBlock> slow = inverter.refresh.slowBlocks();
+  reads.insert(reads.end(), slow.begin(), slow.end());
+  for (std::optional<drive::ReadBlock> read : reads)
+  {
+    for (; read; read = inverter.drive.variantOf(*read))
+    {
+      const wire::Request request = inverter.drive.read(inverter.config.node, *read);
+      if (bus_.line.mayAsk(request))
+      {
+        return request;
+      }
+    }
+  }
+  return std::nullopt;
+}
+}  // namespace bus
+}  // namespace inverter_bus

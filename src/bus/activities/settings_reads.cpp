@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus/activities/settings_reads.h"
+
+#include <string>
+#include <utility>
+
+namespace inverter_bus
+{
+namespace bus
+{
+SettingsReads::SettingsReads(BusState& bus, Turns& turns, Services& services, Absences& absences)
+  : bus_(bus), turns_(turns), services_(services), absences_(absences)
+{
+}
+
+InFlight SettingsReads::compose(const Pick& pick) const
+{
+  Inverter& inverter = *bus_.inverters[pick.inverter];
+  InFlight current;
+  current.pick = pick;
+  current.inverter = pick.inverter;
+  current.purpose = Purpose::Setting;
+  current.request = inverter.prepared(inverter.settings.next());
+  return current;
+}
+
+void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  if (isAnswered(reply))
+  {
+    inverter.settings_tries = 0;
+    inverter.settled(reply.finished_at, reply);
+    // Before a status it took the refresh's turn, and gives it back.
+    turns_.finish(current, reply, current.pick.what == Pick::What::Refresh);
+    configureBlock(reply.finished_at, inverter);
+    return;
+  }
+  inverter.settled(reply.finished_at, reply);
+  const bool again = !inverter.link.offline() && repeat(bus_, inverter.settings_tries, reply);
+  turns_.finish(current, reply, false);
+  if (!again)
+  {
+    absences_.noteLost(reply.finished_at, inverter, reply.error_id);
+  }
+}
+
+void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)
+{
+  const auto wanted =
+      bus_.shutting_down ? std::vector<std::pair<std::string, std::uint32_t>>() : inverter.blockToConfigure();
+  if (wanted.empty())
+  {
+    return;
+  }
+  bus_.outbox.log(Level::Warn, inverter.config.name + ": configure_block: writing " + std::to_string(wanted.size()) +
+                                   " parameters to the drive's EEPROM, once");
+  services_.start(now, inverter.index,
+                  std::make_unique<ConfigureBlockJob>(inverter.drive, inverter.config.node, wanted),
+                  serviceBounds(bus_).write_parameter, AnswerCallback());
+}
+}  // namespace bus
+}  // namespace inverter_bus

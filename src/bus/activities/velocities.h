@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_VELOCITIES_H
+#define INVERTER_BUS_BUS_VELOCITIES_H
+
+#include <string>
+#include <vector>
+
+#include "bus/activities/absences.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// A velocity from its verdict to the words that the drive has confirmed (contract, 3.4 to 3.6, 4.2, 4.6, 8.1 and 8.5).
+class Velocities
+{
+public:
+  Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences);
+
+  /// All of it or nothing; what stops is always carried out. Returns the error id of a refused command, else 0.
+  std::uint16_t command(TimePoint now, const VelocityCommand& command);
+  /// A malformed command.
+  void refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text,
+              bool group);
+
+  /// Nothing: no member needs a frame now.
+  std::optional<InFlight> compose(TimePoint now, const Pick& pick);
+  void sent(const InFlight& current);
+  void ended(const InFlight& current, const wire::Reply& reply);
+  /// The frame reaches the drive's EEPROM.
+  bool wears(const InFlight& current) const;
+
+private:
+  std::uint16_t judgeGroup(TimePoint now, const VelocityCommand& command, std::vector<JudgedVelocity>& judged,
+                           bool& repeat);
+  double factorOf(const VelocityCommand& command) const;
+  std::uint16_t judgeOne(TimePoint now, std::size_t index, const Publisher& publisher, JudgedVelocity& judged) const;
+  void apply(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged, bool refused);
+  bool applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
+  bool applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
+  void tellRefusal(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
+                   std::uint16_t error_id);
+  std::optional<Write> nextWrite(TimePoint now, const Inverter& inverter) const;
+  void fail(const InFlight& current, const wire::Reply& reply, bool too_many_lost);
+  void noteBlockRefusal(const InFlight& current, const wire::Reply& reply);
+  void finish(const InFlight& current, const wire::Reply& reply);
+
+  BusState& bus_;
+  Turns& turns_;
+  const GatewayTraffic& traffic_;
+  Stops& stops_;
+  Absences& absences_;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_VELOCITIES_H

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#include "bus/activities/velocities.h"
+
+#include <algorithm>
+
+namespace inverter_bus
+{
+namespace bus
+{
+namespace
+{
+// A velocity unit that newer and newer targets keep going before it is complete makes room for others after so many frames
+// per inverter.
+constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
+constexpr double STATUS_WAIT_S = 0.02;
+
+/// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+bool mustBeSeenRunning(const Inverter& inverter)
+{
+  return inverter.movement.turnLostAt() && (inverter.drive.reports("operation") || inverter.drive.reports("running"));
+}
+}  // namespace
+
+/// All command words in one frame where the drive can; a word at a time where such a frame could give back a RUN that the
+/// drive has lost (rule 4.1), or where a late reply could be taken for its answer.
+std::optional<Write> Velocities::nextWrite(TimePoint now, const Inverter& inverter) const
+{
+  const bool in_force = inverter.mayRepeatWords(now);
+  if (inverter.refresh.block() && (in_force || !inverter.movement.runConfirmed()))
+  {
+    auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.block() : std::nullopt);
+    if (combined && bus_.line.mayAsk(combined->request))
+    {
+      return combined;
+    }
+  }
+  return inverter.movement.next();
+}
+
+std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
+{
+  std::vector<std::size_t> members = bus_.scheduler.members(pick.command);
+  // The member whose turn it is, and if it needs no frame any more, the next one.
+  std::rotate(members.begin(), std::lower_bound(members.begin(), members.end(), pick.inverter), members.end());
+  for (const std::size_t member : members)
+  {
+    Inverter& inverter = *bus_.inverters[member];
+    if (const auto write = nextWrite(now, inverter))
+    {
+      if (write->starts && mustBeSeenRunning(inverter))
+      {
+        bus_.scheduler.splitOff(pick.command, member, bus_.next_command++, now + seconds(STATUS_WAIT_S), false);
+        continue;
+      }
+      InFlight current;
+      current.pick = pick;
+      current.pick.inverter = member;
+      current.purpose = Purpose::Velocity;
+      current.inverter = member;
+      current.write = *write;
+      current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
+      current.request = inverter.prepared(write->request);
+      return current;
+    }
+    bus_.scheduler.eraseVelocity(member);
+  }
+  return std::nullopt;
+}
+
+void Velocities::sent(const InFlight& current)
+{
+  if (current.purpose != Purpose::Velocity || current.resync)
+  {
+    return;
+  }
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  inverter.movement.sent(current.write);
+  if (current.write.starts)
+  {
+    // The stop that follows is none of a flood.
+    inverter.stop.forgetConfirmation();
+  }
+}
+
+bool Velocities::wears(const InFlight& current) const
+{
+  const Inverter& inverter = *bus_.inverters[current.inverter];
+  return current.purpose == Purpose::Velocity && inverter.drive.wears(current.write.point) &&
+         !inverter.settings.connected();
+}
+
+void Velocities::ended(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  const TimePoint now = reply.finished_at;
+  const bool cancelled = !bus_.scheduler.velocityWaits(current.inverter);
+  noteBlockRefusal(current, reply);
+  if (reply.outcome == wire::Outcome::Ok && !cancelled)
+  {
+    inverter.movement.confirmed(current.write, now);
+    if (current.write.starts)
+    {
+      inverter.settings.commanded();
+    }
+    inverter.lost_writes.acknowledged();
+    ++inverter.velocity_frames;
+    finish(current, reply);
+    return;
+  }
+  if (!current.resync)
+  {
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    inverter.movement.doubtful(current.write, now);
+  }
+  const bool lost = !isAnswered(reply);
+  // A loop-back that was lost writes nothing.
+  const bool too_many = lost && !current.resync && !bus_.behind_another && inverter.lost_writes.lost();
+  // A gateway that says so itself has tried already.
+  const bool again = lost && inverter.lost_writes.tryAgain() && !too_many && reply.gateway_code == 0;
+  if (again && !cancelled)
+  {
+    // The other members of a group go on without it.
+    bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, now,
+                            inverter.movement.target() && inverter.movement.target()->zero);
+    turns_.finish(current, reply, true);
+    return;
+  }
+  bus_.scheduler.eraseVelocity(current.inverter);
+  turns_.finish(current, reply, !bus_.scheduler.members(current.pick.command).empty());
+  if (reply.outcome == wire::Outcome::Ok)
+  {
+    return;
+  }
+  inverter.lost_writes.velocityEnded();
+  if (lost)
+  {
+    absences_.noteLostWrite(now, inverter, reply.error_id);
+  }
+  if (!cancelled)
+  {
+    fail(current, reply, too_many);
+  }
+}
+
+/// It is not sent again.
+void Velocities::fail(const InFlight& current, const wire::Reply& reply, bool too_many_lost)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  if (inverter.link.offline())
+  {
+    return;
+  }
+  const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
+  inverter.command_error.failed(reply.error_id, refusalText(inverter, reply.error_id));
+  inverter.movement.giveUp();
+  if (!isAnswered(reply) && (too_many_lost || inverter.movement.runPossible()))
+  {
+    absences_.writesLost(reply.finished_at, inverter);
+    return;
+  }
+  if (!inverter.movement.runPossible())
+  {
+    inverter.interlock.resting();
+  }
+  if (zero || current.write.starts)
+  {
+    // Nobody knows whether the motor runs: it shall not.
+    stops_.request(reply.finished_at, inverter, StopMode::Decelerate, false, "");
+  }
+  if (current.write.starts)
+  {
+    inverter.stop.hold();
+  }
+}
+
+/// A drive that can't carry out a block write (slots empty or not in effect) gets its words one by one from the next
+/// command on; this one is refused like any other, since nobody knows what the drive took of it.
+void Velocities::noteBlockRefusal(const InFlight& current, const wire::Reply& reply)
+{
+  constexpr std::uint8_t CANNOT_BE_EXECUTED = 0x04;
+  const bool refused = reply.outcome == wire::Outcome::Exception && !current.write.more.empty();
+  if (refused && (reply.error_id & 0xFFU) == CANNOT_BE_EXECUTED)
+  {
+    Inverter& inverter = *bus_.inverters[current.inverter];
+    inverter.dropBlock("the drive refuses the block write (" + inverter.drive.exceptionText(reply.error_id) + ")");
+  }
+}
+
+void Velocities::finish(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  const bool complete = !inverter.movement.next();
+  // A newer target has come during its last frame: it has its own place in the order (contract, 3.6 and 8.1).
+  const bool over = current.write.last || inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
+  if (complete)
+  {
+    inverter.command_error.confirmed();
+  }
+  if (complete || over)
+  {
+    bus_.scheduler.eraseVelocity(current.inverter);
+  }
+  turns_.finish(current, reply, !bus_.scheduler.members(current.pick.command).empty());
+  if (!complete && over)
+  {
+    inverter.velocity_frames = 0;
+    WaitingCommand waiting;
+    waiting.id = bus_.next_command++;
+    waiting.inverters = { inverter.index };
+    waiting.not_before = reply.finished_at;
+    bus_.scheduler.push(waiting);
+  }
+  if (complete && inverter.movement.zeroUnverified() && !inverter.drive.runBlock())
+  {
+    inverter.cameToRest(reply.finished_at);
+  }
+}
+}  // namespace bus
+}  // namespace inverter_bus

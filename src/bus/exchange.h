@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_EXCHANGE_H
+#define INVERTER_BUS_BUS_EXCHANGE_H
+
+#include <cstddef>
+
+#include "bus/inverter/movement.h"
+#include "bus/rules/scheduler.h"
+#include "inverter_bus/wire/request.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What the exchange in flight is for: decides which activity hears of its end.
+enum class Purpose
+{
+  StopFrame,
+  Broadcast,
+  Velocity,
+  Job,
+  Refresh,
+  /// Any read that is allowed now, so that the drive's own time-out does not pass; its answer is not used.
+  KeepAlive,
+  Probe,
+  Setting,
+  Release
+};
+
+/// The exchange in flight, as the activity that composed it wants it.
+struct InFlight
+{
+  Pick pick;
+  Purpose purpose = Purpose::Refresh;
+  std::size_t inverter = 0;
+  wire::Request request;
+  /// A loop-back that makes sure that no late reply is on its way; the real request follows.
+  bool resync = false;
+  /// The request is a loop-back, as a probe or for resync.
+  bool loopback = false;
+  /// A stop's write that a late reply to an earlier request could answer.
+  bool may_be_late = false;
+  /// A velocity's frame that may set RUN or raise the frequency.
+  bool moves = false;
+  Write write;
+  CommandId job = 0;
+};
+
+/// What the end of an exchange says of its inverter beyond the activity's own business; Absences draws the conclusion.
+enum class Ending
+{
+  /// Nothing: it was answered, or its loss is no news.
+  Nothing,
+  Lost,
+  LostWrite,
+  /// Counts among the writes that were lost in a row.
+  LostStopWrite,
+  /// Answered, but by a refusal: an offline inverter has shown no status after all.
+  Refused
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_EXCHANGE_H

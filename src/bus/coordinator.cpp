@@ -235,7 +235,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
     activities_.checks.note(reply);
     activities_.port.noteConnection(reply.finished_at, current, reply);
   }
-  inverter.noteCost(current.pick.probe, reply.outcome, activities_.turns.price(current, reply));
+  inverter.link.noteCost(current.pick.probe, reply.outcome, activities_.turns.price(current, reply));
   const bool read_of_refresh = current.purpose == Purpose::Refresh && !current.resync;
   if (current.request.expects_reply && !isAnswered(reply) && !bus_.behind_another && !read_of_refresh)
   {

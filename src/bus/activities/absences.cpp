@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bus/report/inverter_report.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -26,7 +28,7 @@ void Absences::take(Ending ending, const wire::Reply& reply, Inverter& inverter)
     {
       noteLostWrite(reply.finished_at, inverter, reply.error_id);
       const bool too_many = !bus_.behind_another && inverter.lost_writes.lost();
-      if (too_many && !inverter.offline())
+      if (too_many && !inverter.link.offline())
       {
         writesLost(reply.finished_at, inverter);
       }
@@ -65,7 +67,7 @@ void Absences::noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t erro
 /// An offline inverter that has answered has shown no status after all: what that has cost is paid by the probes.
 void Absences::failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
-  if (inverter.onTrial() && !bus_.shutting_down)
+  if (inverter.link.onTrial() && !bus_.shutting_down)
   {
     bus_.scheduler.chargeProbe(now, inverter.endTrial(error_id));
   }
@@ -80,7 +82,7 @@ void Absences::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t er
     return;
   }
   failTrial(now, inverter, error_id);
-  if (!inverter.offline() && inverter.liveness.needsRead())
+  if (!inverter.link.offline() && inverter.liveness.needsRead())
   {
     bus_.scheduler.readSoon(inverter.index);
   }
@@ -96,9 +98,9 @@ void Absences::writesLost(TimePoint now, Inverter& inverter)
     bus_.outbox.log(Level::Error, inverter.config.name + ": stopping and locking: " + text);
   }
   inverter.lost_writes.raise();
-  inverter.velocityFailed(wire::ERROR_TIMEOUT, text);
+  inverter.command_error.failed(wire::ERROR_TIMEOUT, text);
   stops_.request(now, inverter, StopMode::Decelerate, true, "");
-  if (news && inverter.known())
+  if (news && inverter.link.known())
   {
     bus_.outbox.publish(now, inverter);
   }
@@ -107,11 +109,10 @@ void Absences::writesLost(TimePoint now, Inverter& inverter)
 void Absences::wentOffline(TimePoint now, Inverter& inverter)
 {
   bus_.scheduler.eraseVelocity(inverter.index);
-  services_.fail(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason());
+  services_.fail(inverter.index, ERROR_OFFLINE, errorText(ERROR_OFFLINE) + ": " + offlineReason(inverter));
   if (bus_.connected)
   {
-    bus_.outbox.log(Level::Error, inverter.config.name + ": offline: " + inverter.offlineReason(),
-                    inverter.config.name);
+    bus_.outbox.log(Level::Error, inverter.config.name + ": offline: " + offlineReason(inverter), inverter.config.name);
     bus_.outbox.trace(inverter.config.name + " went offline");
   }
   if (inverter.movement.runPossible())
@@ -125,12 +126,12 @@ void Absences::loseEverybody(TimePoint now, std::uint16_t error_id)
 {
   for (const auto& inverter : bus_.inverters)
   {
-    if (!inverter->offline())
+    if (!inverter->link.offline())
     {
       inverter->goOffline(error_id);
       wentOffline(now, *inverter);
     }
-    inverter->noteExchangeError(error_id);
+    inverter->link.failed(error_id);
   }
 }
 
@@ -144,7 +145,7 @@ bool Absences::watchStatuses(TimePoint now)
   bool lost_one = false;
   for (const auto& inverter : bus_.inverters)
   {
-    if (inverter->overdue(now, refreshPeriod(*inverter)))
+    if (!inverter->link.offline() && inverter->liveness.overdue(now, refreshPeriod(*inverter)))
     {
       const std::uint16_t error_id = inverter->liveness.lastError();
       inverter->goOffline(error_id);

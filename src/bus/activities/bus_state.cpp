@@ -51,7 +51,7 @@ BusState::BusState(const Configuration& the_configuration, const wire::Line& the
 
 bool untested(const Inverter& inverter)
 {
-  return inverter.config.ownPort() && !inverter.everKnown();
+  return inverter.config.ownPort() && !inverter.link.everKnown();
 }
 
 std::string refusalText(const Inverter& inverter, std::uint16_t error_id)

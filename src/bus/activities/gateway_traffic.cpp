@@ -117,7 +117,7 @@ const Inverter* GatewayTraffic::endangered() const
   for (const auto& inverter : bus_.inverters)
   {
     const auto own = inverter->settings.driveTimeout();
-    if (own && *own < shortest && !inverter->offline() && inverter->mayRun())
+    if (own && *own < shortest && !inverter->link.offline() && inverter->mayRun())
     {
       first = inverter.get();
       shortest = *own;
@@ -129,7 +129,7 @@ const Inverter* GatewayTraffic::endangered() const
 /// Contract, 8.8: a stop of an inverter that may run goes in spite of what that does to its neighbours, with one WARN.
 void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
 {
-  const Inverter* const neighbour = inverter.silent() && !bus_.shutting_down ? endangered() : nullptr;
+  const Inverter* const neighbour = inverter.link.silent() && !bus_.shutting_down ? endangered() : nullptr;
   if (neighbour != nullptr && inverter.stop.takeCostly())
   {
     const std::string& name = neighbour->config.name;
@@ -182,8 +182,9 @@ Duration GatewayTraffic::worstStop() const
   {
     return wire;
   }
-  const auto silent = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
-                                    [](const auto& inverter) { return inverter->offline() || !inverter->known(); });
+  const auto silent = std::count_if(bus_.inverters.begin(), bus_.inverters.end(), [](const auto& inverter) {
+    return inverter->link.offline() || !inverter->link.known();
+  });
   return wire + static_cast<int>(silent) * block();
 }
 
@@ -201,14 +202,14 @@ std::string GatewayTraffic::returnText() const
     return "not while " + neighbour->config.name + " runs, whose own time-out is shorter than the gateway is kept";
   }
   const auto offline = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
-                                     [](const auto& inverter) { return inverter->offline(); });
+                                     [](const auto& inverter) { return inverter->link.offline(); });
   return util::durationText(Budget::longestReturn(block(), static_cast<std::size_t>(offline)));
 }
 
 std::optional<Finding> GatewayTraffic::finding() const
 {
   const bool anybody_away = std::any_of(bus_.inverters.begin(), bus_.inverters.end(),
-                                        [](const auto& inverter) { return inverter->offline(); });
+                                        [](const auto& inverter) { return inverter->link.offline(); });
   const Duration allowed = seconds(bus_.configuration.bus.response_timeout);
   if (!bus_.gateway.active() || !anybody_away || bus_.gateway.block() <= allowed)
   {

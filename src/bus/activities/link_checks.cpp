@@ -24,7 +24,7 @@ std::optional<Pick> LinkChecks::pick(TimePoint now, Gate& gate)
 {
   while (const auto index = bus_.connection.toRead())
   {
-    if (bus_.inverters[*index]->offline())
+    if (bus_.inverters[*index]->link.offline())
     {
       bus_.connection.unanswered(*index);
       continue;
@@ -39,7 +39,7 @@ std::optional<Pick> LinkChecks::pick(TimePoint now, Gate& gate)
     Pick pick;
     pick.what = Pick::What::Refresh;
     const auto in_doubt = std::find_if(bus_.inverters.begin(), bus_.inverters.end(), [](const auto& inverter) {
-      return !inverter->offline() && inverter->liveness.needsRead();
+      return !inverter->link.offline() && inverter->liveness.needsRead();
     });
     pick.inverter = in_doubt != bus_.inverters.end() ? (*in_doubt)->index : *index;
     return pick;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "bus/report/inverter_report.h"
+
 namespace inverter_bus
 {
 namespace bus
@@ -83,7 +85,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
     inverter.noteStatus(reply, more);
     if (more)
     {
-      actOn(reply.finished_at, inverter, inverter.judgeWords(reply.finished_at));
+      actOn(reply.finished_at, inverter, inverter.wordsRead(reply.finished_at));
     }
     if (inverter.refresh.takeComplete())
     {
@@ -96,7 +98,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
     return;
   }
   // One that has lost as many writes as make a drive offline is not asked twice.
-  const bool decided = inverter.offline() || inverter.liveness.needsRead();
+  const bool decided = inverter.link.offline() || inverter.liveness.needsRead();
   if (!decided && repeat(bus_, inverter.refresh_tries, reply))
   {
     turns_.finish(current, reply, true);
@@ -104,9 +106,9 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   }
   inverter.refresh.failed();
   turns_.finish(current, reply, false);
-  const bool was_offline = inverter.offline();
+  const bool was_offline = inverter.link.offline();
   absences_.noteLost(reply.finished_at, inverter, reply.error_id);
-  if (!was_offline && !inverter.offline() && inverter.known())
+  if (!was_offline && !inverter.link.offline() && inverter.link.known())
   {
     // Shows the error beside the last good values, which keep their stamp.
     bus_.outbox.publish(reply.finished_at, inverter);
@@ -131,24 +133,24 @@ void Polls::keptAlive(const InFlight& current, const wire::Reply& reply)
 /// It answers, but refuses to tell: the last good values keep their stamp.
 void Polls::refusedStatus(const wire::Reply& reply, Inverter& inverter)
 {
-  if (inverter.refresh.takeRefusal() || inverter.offline())
+  if (inverter.refresh.takeRefusal() || inverter.link.offline())
   {
     absences_.noteRefusal(reply.finished_at, inverter, reply.error_id);
   }
-  if (!inverter.offline() && inverter.known())
+  if (!inverter.link.offline() && inverter.link.known())
   {
-    inverter.noteExchangeError(reply.error_id);
+    inverter.link.failed(reply.error_id);
     bus_.outbox.publish(reply.finished_at, inverter);
   }
 }
 
 void Polls::judge(TimePoint now, Inverter& inverter)
 {
-  if (!inverter.known())
+  if (!inverter.link.known())
   {
-    bus_.outbox.log(Level::Ok, inverter.config.name + ": " + inverter.onlineText(), inverter.config.name);
+    bus_.outbox.log(Level::Ok, inverter.config.name + ": " + onlineText(inverter), inverter.config.name);
   }
-  const Judgement judgement = inverter.judge(now);
+  const Judgement judgement = inverter.statusComplete(now);
   if (judgement.tripped)
   {
     bus_.outbox.log(Level::Error, inverter.config.name + ": tripped: " + judgement.trip_text);

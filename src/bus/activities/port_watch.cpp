@@ -43,7 +43,7 @@ void PortWatch::opened(TimePoint now)
   for (const auto& inverter : bus_.inverters)
   {
     inverter->refresh_not_before = now;
-    if (!inverter->known())
+    if (!inverter->link.known())
     {
       inverter->liveness.watchFrom(now);
     }
@@ -183,7 +183,7 @@ std::vector<std::size_t> PortWatch::onlineInverters() const
   std::vector<std::size_t> online;
   for (const auto& inverter : bus_.inverters)
   {
-    if (!inverter->offline() && inverter->known())
+    if (!inverter->link.offline() && inverter->link.known())
     {
       online.push_back(inverter->index);
     }

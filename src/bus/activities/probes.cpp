@@ -38,7 +38,7 @@ InFlight Probes::compose(const Pick& pick)
 
 void Probes::ended(const InFlight& current, const wire::Reply& reply)
 {
-  bus_.inverters[current.inverter]->noteProbed(reply);
+  bus_.inverters[current.inverter]->link.probed(reply);
   turns_.finish(current, reply, false);
 }
 
@@ -48,7 +48,7 @@ Duration Probes::timeout(const Inverter& inverter) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
   const auto dead = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
-                                  [](const std::unique_ptr<Inverter>& other) { return other->silent(); });
+                                  [](const std::unique_ptr<Inverter>& other) { return other->link.silent(); });
   // Staggered by index, so that no round has more than a few full ones.
   const std::size_t every = dead > 1 ? FULL_PROBE_EVERY_OF_MANY : FULL_PROBE_EVERY;
   if ((inverter.probes + inverter.index) % every == every - 1)
@@ -57,7 +57,7 @@ Duration Probes::timeout(const Inverter& inverter) const
   }
   const wire::Request bare = inverter.probe(0, Duration::zero());
   const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<long>(dead, 1)));
-  const Duration needed = inverter.slowestReply() + inverter.slowestReply() / 2;
+  const Duration needed = inverter.link.slowestReply() + inverter.link.slowestReply() / 2;
   const Duration least = std::max(needed, seconds(SHORTEST_PROBE_TIMEOUT_S));
   return std::min(full, std::max(least, share - bus_.line.costUnanswered(bare)));
 }
@@ -88,10 +88,12 @@ void Probes::lateReply(TimePoint now, const wire::LateReply& late)
     }
     if (late.delay && alone)
     {
-      inverter->lateReply(*late.delay);
+      inverter->link.cameLate(*late.delay);
+      inverter->record.noteLate();
     }
     // A probe that was given up early: worth asking for the status, at the probes' cost.
-    inverter->beginTrial(late.delay.value_or(Duration::zero()));
+    inverter->link.beginTrial(
+        std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout)));
   }
 }
 }  // namespace bus

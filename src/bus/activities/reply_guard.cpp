@@ -23,7 +23,7 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
   }
   const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
   current.may_be_late = stop_write;
-  const bool last_frame = bus_.shutting_down && inverter.silent();
+  const bool last_frame = bus_.shutting_down && inverter.link.silent();
   if (stop_write && (last_frame || !inverter.stop.wantsClearLine()))
   {
     return true;
@@ -90,7 +90,10 @@ bool ReplyGuard::readBackSafely(Inverter& inverter, InFlight& current) const
 /// A read that no late reply can answer; nothing: this drive has none.
 std::optional<wire::Request> ReplyGuard::spareRead(const Inverter& inverter) const
 {
-  for (std::optional<drive::ReadBlock> read : inverter.reads())
+  std::vector<drive::ReadBlock> reads = inverter.refresh.fastBlocks();
+  const std::vector<drive::ReadBlock> slow = inverter.refresh.slowBlocks();
+  reads.insert(reads.end(), slow.begin(), slow.end());
+  for (std::optional<drive::ReadBlock> read : reads)
   {
     for (; read; read = inverter.drive.variantOf(*read))
     {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "bus/report/inverter_report.h"
 #include "util/text.h"
 
 namespace inverter_bus
@@ -33,8 +34,8 @@ void Reports::publishSlowly(TimePoint now)
   const bool busy = !bus_.gateway.free(now);
   for (const auto& inverter : bus_.inverters)
   {
-    const bool held_up = busy && inverter->known();
-    if ((inverter->offline() || held_up) &&
+    const bool held_up = busy && inverter->link.known();
+    if ((inverter->link.offline() || held_up) &&
         now - bus_.outbox.lastPublished(inverter->index) >= seconds(STATUS_PERIOD_OFFLINE_S))
     {
       bus_.outbox.publish(now, *inverter);
@@ -74,7 +75,7 @@ BusStatus Reports::busStatus(TimePoint now) const
   status.stop_latency_max = toSeconds(stops_.latencyMax());
   for (const auto& inverter : bus_.inverters)
   {
-    if (inverter->offline())
+    if (inverter->link.offline())
     {
       status.offline_nodes.push_back(inverter->config.node);
     }
@@ -93,9 +94,9 @@ Report Reports::report(TimePoint now) const
     InverterReport entry;
     entry.name = inverter->config.name;
     entry.node = inverter->config.node;
-    entry.status = inverter->status(now);
-    entry.findings = inverter->findings(now);
-    entry.values = inverter->values(now);
+    entry.status = statusOf(*inverter, now);
+    entry.findings = findingsOf(*inverter, now);
+    entry.values = valuesOf(*inverter, now);
     const auto timeout = inverter->settings.driveTimeout();
     if (timeout && !inverter->drive.profile().communication_loss.timeout_parameter.empty())
     {

@@ -108,7 +108,7 @@ Ending Services::ended(const InFlight& current, const wire::Reply& reply)
   const Job::Progress progress = isAnswered(reply) ? running.job->done(reply) : running.job->lost(reply);
   if (isAnswered(reply))
   {
-    inverter.noDeafness();
+    inverter.liveness.heard();
   }
   doneStep(reply.finished_at, current);
   turns_.finish(current, reply, false);
@@ -168,7 +168,7 @@ void Services::advance(TimePoint now, CommandId id, Job::Progress progress)
     // Resetting clears the drive's words, and it may be deaf for a while.
     if (reset->takeDeafening())
     {
-      inverter.expectSilence(now, seconds(inverter.drive.profile().deaf_after_reset));
+      inverter.liveness.deafUntil(now + seconds(inverter.drive.profile().deaf_after_reset));
     }
     inverter.movement.forgetWords();
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bus/activities/parameter_gate.h"
+#include "bus/report/inverter_report.h"
 
 namespace inverter_bus
 {
@@ -117,11 +118,10 @@ void Services::writeParameter(TimePoint now, std::size_t index, const std::strin
 bool Services::refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback)
 {
   const bool wrong = inverter.settings.identity() == Identity::Wrong;
-  const std::string why = inverter.offline() && !wrong ? "" : inverter.wrongDrive();
+  const std::string why = inverter.link.offline() && !wrong ? "" : inverter.settings.identityText();
   if (!why.empty() && !bus_.shutting_down)
   {
-    bus_.outbox.refuse(callback, inverter.settings.identity() == Identity::Wrong ? ERROR_NOT_ARMED : ERROR_OFFLINE,
-                       why);
+    bus_.outbox.refuse(callback, wrong ? ERROR_NOT_ARMED : ERROR_OFFLINE, why);
   }
   return !why.empty() && !bus_.shutting_down;
 }
@@ -138,11 +138,11 @@ bool Services::refuse(std::size_t index, const AnswerCallback& callback)
   {
     return true;
   }
-  if (inverter.offline() || !inverter.known())
+  if (inverter.link.offline() || !inverter.link.known())
   {
     bus_.outbox.refuse(callback, ERROR_OFFLINE,
-                       inverter.offline() ? errorText(ERROR_OFFLINE) + ": " + inverter.offlineReason()
-                                          : "the inverter has not answered yet");
+                       inverter.link.offline() ? errorText(ERROR_OFFLINE) + ": " + offlineReason(inverter)
+                                               : "the inverter has not answered yet");
     return true;
   }
   return false;

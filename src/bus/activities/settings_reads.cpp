@@ -38,7 +38,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
     return;
   }
   inverter.settled(reply.finished_at, reply);
-  const bool again = !inverter.offline() && repeat(bus_, inverter.settings_tries, reply);
+  const bool again = !inverter.link.offline() && repeat(bus_, inverter.settings_tries, reply);
   turns_.finish(current, reply, false);
   if (!again)
   {

@@ -64,7 +64,7 @@ Pick Shutdown::pick(TimePoint now)
   for (const auto& inverter : bus_.inverters)
   {
     const bool may_go = inverter->stop.pending() && traffic_.stopNotBefore(now, *inverter) <= now;
-    const bool live = may_go && !inverter->silent();
+    const bool live = may_go && !inverter->link.silent();
     if (live && (best == nullptr || goesBefore(inverter->stop, best->stop)))
     {
       best = inverter.get();
@@ -73,7 +73,7 @@ Pick Shutdown::pick(TimePoint now)
   for (const auto& inverter : bus_.inverters)
   {
     const bool one_frame =
-        inverter->stop.pending() && inverter->silent() && !tried_[inverter->index] && !untested(*inverter);
+        inverter->stop.pending() && inverter->link.silent() && !tried_[inverter->index] && !untested(*inverter);
     if (best == nullptr && one_frame)
     {
       best = inverter.get();
@@ -117,14 +117,15 @@ TimePoint Shutdown::nextStop(TimePoint now) const
   TimePoint at = TimePoint::max();
   for (const auto& inverter : bus_.inverters)
   {
-    at = inverter->stop.pending() && !inverter->silent() ? std::min(at, traffic_.stopNotBefore(now, *inverter)) : at;
+    at = inverter->stop.pending() && !inverter->link.silent() ? std::min(at, traffic_.stopNotBefore(now, *inverter))
+                                                              : at;
   }
   return at;
 }
 
 bool Shutdown::releaseDue(const Inverter& inverter) const
 {
-  return inverter.config.release_on_exit && !released_[inverter.index] && !inverter.offline() &&
+  return inverter.config.release_on_exit && !released_[inverter.index] && !inverter.link.offline() &&
          !inverter.stop.pending() && inverter.drive.sequence("release") != nullptr;
 }
 
@@ -135,7 +136,7 @@ bool Shutdown::done(TimePoint now)
     return true;
   }
   return std::none_of(bus_.inverters.begin(), bus_.inverters.end(), [&](const std::unique_ptr<Inverter>& inverter) {
-    const bool untried = !bus_.connected || !inverter->silent() || !tried_[inverter->index];
+    const bool untried = !bus_.connected || !inverter->link.silent() || !tried_[inverter->index];
     return (inverter->stop.pending() && untried && !untested(*inverter)) || (bus_.connected && releaseDue(*inverter));
   });
 }

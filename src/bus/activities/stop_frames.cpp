@@ -60,7 +60,7 @@ std::optional<InFlight> Stops::composeBroadcast(TimePoint now)
 InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  if (bus_.shutting_down && inverter.silent() && inverter.stop.written())
+  if (bus_.shutting_down && inverter.link.silent() && inverter.stop.written())
   {
     // Rule 4.4: its one frame is the stop itself.
     inverter.stop.writeAgain();
@@ -110,7 +110,7 @@ Ending Stops::ended(const InFlight& current, const wire::Reply& reply)
     return Ending::Nothing;
   }
   const bool write = !current.resync && !inverter.stop.written();
-  if (reply.connection_closed && !inverter.offline() && !bus_.connection.closedAgain(current.inverter))
+  if (reply.connection_closed && !inverter.link.offline() && !bus_.connection.closedAgain(current.inverter))
   {
     // It counts no try: the same frame goes first over the next connection. Closed again in its place, it is its station
     // that is silent.

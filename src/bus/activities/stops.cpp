@@ -134,10 +134,9 @@ std::string Stops::problem(const Inverter& inverter) const
 
 void Stops::confirmed(TimePoint now, Inverter& inverter)
 {
-  inverter.movement.stopped(now);
+  inverter.cameToRest(now);
   inverter.settings.released();
   inverter.interlock.stopConfirmed(now);
-  inverter.interlock.resting();
   finishCalls(now);
 }
 

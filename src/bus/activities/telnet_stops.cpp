@@ -56,7 +56,7 @@ bool TelnetStops::over(TimePoint now)
 Pick TelnetStops::pick(TimePoint now) const
 {
   const auto key = [](const Inverter& inverter) {
-    return std::make_tuple(inverter.silent(), inverter.stop.attempts(), inverter.stop.lastSentAt());
+    return std::make_tuple(inverter.link.silent(), inverter.stop.attempts(), inverter.stop.lastSentAt());
   };
   Pick pick;
   pick.wake = now;
@@ -67,7 +67,7 @@ Pick TelnetStops::pick(TimePoint now) const
     {
       pick.what = Pick::What::Stop;
       pick.inverter = inverter->index;
-      pick.probe = inverter->silent();
+      pick.probe = inverter->link.silent();
     }
   }
   return pick;

@@ -30,16 +30,16 @@ std::string inConflict(const Inverter& inverter, std::uint16_t& error_id)
 {
   const bool wrong = inverter.settings.identity() == Identity::Wrong;
   // That it is the wrong drive says more than that it tells no status (the order of ids: contract, section 2).
-  if (inverter.offline() && !wrong)
+  if (inverter.link.offline() && !wrong)
   {
     return "";
   }
-  if (!inverter.wrongDrive().empty())
+  if (inverter.settings.identity() != Identity::Right)
   {
     error_id = wrong ? ERROR_NOT_ARMED : ERROR_LOCKED;
-    return inverter.wrongDrive();
+    return inverter.settings.identityText();
   }
-  if (!inverter.known())
+  if (!inverter.link.known())
   {
     return "";
   }
@@ -59,11 +59,11 @@ std::string inConflict(const Inverter& inverter, std::uint16_t& error_id)
 /// 0: a velocity of this publisher may move it.
 std::uint16_t lockOf(TimePoint now, const Inverter& inverter, const Publisher& publisher)
 {
-  if (inverter.offline() && inverter.settings.identity() != Identity::Wrong)
+  if (inverter.link.offline() && inverter.settings.identity() != Identity::Wrong)
   {
     return ERROR_OFFLINE;
   }
-  if (!inverter.known())
+  if (!inverter.link.known())
   {
     // Silence counts from the first status, not from a stop that was confirmed before it.
     return ERROR_LOCKED;
@@ -118,7 +118,7 @@ std::uint16_t Velocities::judgeOne(TimePoint now, std::size_t index, const Publi
   {
     judged.text = lockedText(true);
   }
-  else if (judged.error_id == ERROR_LOCKED && inverter.known() && !inverter.interlock.locked(now))
+  else if (judged.error_id == ERROR_LOCKED && inverter.link.known() && !inverter.interlock.locked(now))
   {
     judged.text = "locked for " + util::printable(publisher.name) +
                   ", which has neither sent 0 nor been silent since the last stop";
@@ -215,8 +215,9 @@ void Velocities::tellRefusal(TimePoint now, const VelocityCommand& command, cons
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
     Inverter& inverter = *bus_.inverters[target.first];
-    one.error_id == error_id ? inverter.refuseCommand(error_id, one.text)
-                             : inverter.refuseForOther(error_id, reasons, one.error_id, one.text);
+    const Obstacles obstacles = inverter.obstacles();
+    one.error_id == error_id ? inverter.command_error.set(error_id, one.text, obstacles)
+                             : inverter.command_error.setForOther(error_id, reasons, one.error_id, one.text, obstacles);
     bus_.refusals.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
                                                                : "the group was refused: " + reasons);
   }
@@ -282,8 +283,8 @@ bool Velocities::applyZero(TimePoint now, Inverter& inverter, const Publisher& p
   {
     inverter.interlock.zeroed(now, publisher);
   }
-  inverter.acceptCommand();
-  inverter.velocityConfirmed();
+  inverter.command_error.clear();
+  inverter.command_error.confirmed();
   bus_.refusals.accepted(inverter.index);
   if (inverter.stop.pending())
   {
@@ -308,7 +309,7 @@ bool Velocities::applyZero(TimePoint now, Inverter& inverter, const Publisher& p
 bool Velocities::applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)
 {
   inverter.interlock.commanded(now, publisher, true);
-  inverter.acceptCommand();
+  inverter.command_error.clear();
   bus_.refusals.accepted(inverter.index);
   // Only the stop of a command of 0 can be pending here; the newer command takes its place.
   inverter.stop.cancel();
@@ -321,7 +322,8 @@ void Velocities::refuse(TimePoint now, const std::vector<std::size_t>& indices, 
 {
   for (const std::size_t index : indices)
   {
-    bus_.inverters[index]->refuseCommand(error_id, text);
+    Inverter& inverter = *bus_.inverters[index];
+    inverter.command_error.set(error_id, text, inverter.obstacles());
     bus_.refusals.notCommanded(index, text);
   }
   if (group)

@@ -14,6 +14,12 @@ namespace
 // per inverter.
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 constexpr double STATUS_WAIT_S = 0.02;
+
+/// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+bool mustBeSeenRunning(const Inverter& inverter)
+{
+  return inverter.movement.turnLostAt() && (inverter.drive.reports("operation") || inverter.drive.reports("running"));
+}
 }  // namespace
 
 /// All command words in one frame where the drive can; a word at a time where such a frame could give back a RUN that the
@@ -42,7 +48,7 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
     Inverter& inverter = *bus_.inverters[member];
     if (const auto write = nextWrite(now, inverter))
     {
-      if (write->starts && inverter.mustBeSeenRunning())
+      if (write->starts && mustBeSeenRunning(inverter))
       {
         bus_.scheduler.splitOff(pick.command, member, bus_.next_command++, now + seconds(STATUS_WAIT_S), false);
         continue;
@@ -141,12 +147,12 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
 void Velocities::fail(const InFlight& current, const wire::Reply& reply, bool too_many_lost)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
-  if (inverter.offline())
+  if (inverter.link.offline())
   {
     return;
   }
   const bool zero = inverter.movement.target() && inverter.movement.target()->zero;
-  inverter.velocityFailed(reply.error_id, refusalText(inverter, reply.error_id));
+  inverter.command_error.failed(reply.error_id, refusalText(inverter, reply.error_id));
   inverter.movement.giveUp();
   if (!isAnswered(reply) && (too_many_lost || inverter.movement.runPossible()))
   {
@@ -189,7 +195,7 @@ void Velocities::finish(const InFlight& current, const wire::Reply& reply)
   const bool over = current.write.last || inverter.velocity_frames >= MOST_FRAMES_PER_UNIT;
   if (complete)
   {
-    inverter.velocityConfirmed();
+    inverter.command_error.confirmed();
   }
   if (complete || over)
   {
@@ -207,8 +213,7 @@ void Velocities::finish(const InFlight& current, const wire::Reply& reply)
   }
   if (complete && inverter.movement.zeroUnverified() && !inverter.drive.runBlock())
   {
-    inverter.movement.stopped(reply.finished_at);
-    inverter.interlock.resting();
+    inverter.cameToRest(reply.finished_at);
   }
 }
 }  // namespace bus

@@ -72,17 +72,30 @@ void CommandError::setForOther(std::uint16_t error_id, const std::string& reason
 
 void CommandError::clear()
 {
-  *this = CommandError();
+  set(0, "", Obstacles());
+}
+
+void CommandError::failed(std::uint16_t error_id, const std::string& text)
+{
+  failed_id_ = error_id;
+  failed_text_ = text;
+}
+
+void CommandError::confirmed()
+{
+  failed_id_ = 0;
+  failed_text_.clear();
 }
 
 void CommandError::wentOffline()
 {
   before_offline_ = id_ != 0;
+  confirmed();
 }
 
 std::uint16_t CommandError::id() const
 {
-  return id_;
+  return id_ != 0 ? id_ : failed_id_;
 }
 
 bool CommandError::countsWhileOffline() const
@@ -139,6 +152,10 @@ std::string CommandError::lastingText(const Obstacles& now, const std::string& o
 
 std::string CommandError::text(const Obstacles& now, const std::string& offline_reason) const
 {
+  if (id_ == 0)
+  {
+    return failed_id_ == 0 ? "" : "the last velocity was not carried out: " + failed_text_;
+  }
   const bool lasting = lasts(now);
   if (group_text_.empty())
   {

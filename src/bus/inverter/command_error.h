@@ -23,8 +23,9 @@ struct Obstacles
   bool wrong_drive = false;
 };
 
-/// The last velocity that was refused or could not be carried out. Its id stays until the next accepted command (contract,
-/// section 2); its text stays true: what is over is told as over.
+/// The last velocity that was refused or could not be carried out. The id of a refusal stays until the next accepted command
+/// (contract, section 2); its text stays true: what is over is told as over. Behind a refusal, a failure at the drive stays
+/// until a velocity is confirmed, since a stream of accepted ones would hide it.
 class CommandError
 {
 public:
@@ -34,7 +35,12 @@ public:
   /// \p own_text: what stood in the way of this one as well, but counts less; 0: nothing did.
   void setForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
                    const std::string& own_text, const Obstacles& now);
+  /// A velocity was accepted: no refusal is left.
   void clear();
+  /// One that was accepted has failed at the drive.
+  void failed(std::uint16_t error_id, const std::string& text);
+  /// One was confirmed, or a 0 came: no failure is left.
+  void confirmed();
   /// The inverter has gone offline: that is newer, and what counts.
   void wentOffline();
 
@@ -68,6 +74,9 @@ private:
   std::string text_;
   Cause cause_ = Cause::Lasting;
   bool before_offline_ = false;
+  /// 0: none.
+  std::uint16_t failed_id_ = 0;
+  std::string failed_text_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

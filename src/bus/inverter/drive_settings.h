@@ -67,7 +67,7 @@ public:
   void released();
 
   Identity identity() const;
-  /// Why the drive is the wrong one, or what it has not told yet.
+  /// Why the drive gets no command but a stop: it is the wrong one, or has not told yet what it is; empty: it is right.
   std::string identityText() const;
   /// As the drive names itself (CompoWay/F); empty: not told.
   const std::string& model() const;

@@ -66,6 +66,17 @@ void Liveness::watchFrom(TimePoint time)
 void Liveness::deafUntil(TimePoint time)
 {
   deaf_until_ = time;
+  silent_until_ = time;
+}
+
+void Liveness::heard()
+{
+  silent_until_ = TimePoint();
+}
+
+bool Liveness::mayBeDeaf(TimePoint now) const
+{
+  return now < silent_until_;
 }
 
 void Liveness::notWatching(TimePoint now, Duration duration)
@@ -81,6 +92,7 @@ void Liveness::complete(TimePoint now)
   refusal_ = 0;
   misses_ = 0;
   answers_some_ = false;
+  heard();
   dataRead();
 }
 

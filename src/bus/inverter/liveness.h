@@ -36,8 +36,12 @@ public:
   // --- the age of the status ------------------------------------------------------------------------------------------
   /// The watch begins at this time: nothing that came before was to be expected (start-up).
   void watchFrom(TimePoint time);
-  /// Until then no status is expected (a reset's deaf time).
+  /// Until then no status is expected, and a lost exchange is none until the drive is heard (a reset's deaf time).
   void deafUntil(TimePoint time);
+  /// The drive has answered: if it is deaf, then from the next frame on.
+  void heard();
+  /// It is expected to be deaf, and has not been heard meanwhile.
+  bool mayBeDeaf(TimePoint now) const;
   /// Until \p now this node itself did not run, for \p duration: nobody asked for a status, so none was to be expected.
   void notWatching(TimePoint now, Duration duration);
   void complete(TimePoint now);
@@ -76,6 +80,8 @@ private:
 
   TimePoint since_;
   TimePoint deaf_until_;
+  /// The same until the drive is heard.
+  TimePoint silent_until_;
 
   /// By length, since the last complete status.
   std::map<Duration, Reads> reads_;

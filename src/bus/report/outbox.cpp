@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/report/outbox.h"
 
-#include "bus/inverter/inverter.h"
+#include "bus/report/inverter_report.h"
 
 namespace inverter_bus
 {
@@ -19,7 +19,7 @@ void Outbox::log(Level level, const std::string& text, const std::string& subjec
 
 void Outbox::publish(TimePoint now, const Inverter& inverter)
 {
-  outputs_.statuses.push_back(inverter.status(now));
+  outputs_.statuses.push_back(statusOf(inverter, now));
   last_published_[inverter.index] = now;
 }
 

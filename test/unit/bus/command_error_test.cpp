@@ -103,6 +103,39 @@ TEST(CommandError, aNewRefusalHasNothingOfAnOlderOne)
   error.clear();
   EXPECT_EQ(error.id(), 0);
 }
+
+TEST(CommandError, aFailureAtTheDriveIsShownThroughAcceptedCommandsUntilOneIsConfirmed)
+{
+  CommandError error;
+  error.failed(0x0205, "writes are lost");
+  EXPECT_EQ(error.id(), 0x0205);
+  EXPECT_EQ(error.text(NONE, ""), "the last velocity was not carried out: writes are lost");
+  error.clear();
+  EXPECT_EQ(error.id(), 0x0205) << "a stream of accepted ones would hide it";
+  error.confirmed();
+  EXPECT_EQ(error.id(), 0);
+  EXPECT_EQ(error.text(NONE, ""), "");
+}
+
+TEST(CommandError, aRefusalIsShownBeforeAFailureAtTheDrive)
+{
+  CommandError error;
+  error.failed(0x0205, "writes are lost");
+  error.set(ERROR_LOCKED, lockedText(false), locked());
+  EXPECT_EQ(error.id(), ERROR_LOCKED);
+  EXPECT_EQ(error.text(locked(), ""), lockedText(false));
+  error.clear();
+  EXPECT_EQ(error.id(), 0x0205);
+}
+
+TEST(CommandError, whatFailedBeforeTheInverterWentOfflineIsOver)
+{
+  CommandError error;
+  error.failed(0x0205, "writes are lost");
+  error.wentOffline();
+  EXPECT_EQ(error.id(), 0);
+  EXPECT_FALSE(error.countsWhileOffline());
+}
 }  // namespace
 }  // namespace bus
 }  // namespace inverter_bus

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bus/link/own_exceptions.h"
+#include "bus/report/inverter_report.h"
 #include "support/bus_fixture.h"
 
 namespace inverter_bus
@@ -34,7 +35,7 @@ protected:
       more = inverter_.refresh.received(reply(answerTo(request, coils), at(time_), at(sent_at)));
     }
     EXPECT_TRUE(inverter_.refresh.takeComplete());
-    return inverter_.judge(at(time_));
+    return inverter_.statusComplete(at(time_));
   }
 
   /// One refresh in which the drive refuses every read: busy.
@@ -48,7 +49,7 @@ protected:
       time_ += 10;
       more = inverter_.refresh.refused(exception(function, 0x06, at(time_)));
     }
-    return inverter_.judge(at(time_));
+    return inverter_.statusComplete(at(time_));
   }
 
   static std::string answerTo(const std::string& request, const std::string& coils)
@@ -122,52 +123,7 @@ TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
   }
   EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
 }
-TEST(Loopback, OneMissIsEnoughOverTcp)
-{
-  LoopbackKnowledge over_tcp(1);
-  EXPECT_TRUE(over_tcp.usable());
-  over_tcp.note(wire::Outcome::Timeout);
-  EXPECT_FALSE(over_tcp.usable());
-}
 
-TEST(Loopback, ADriveThatAnswersNothingAtAllIsNotTakenForOneWithoutIt)
-{
-  LoopbackKnowledge loopback(3);
-  for (int tries = 0; tries < 10; ++tries)
-  {
-    loopback.note(wire::Outcome::Timeout);
-  }
-  EXPECT_TRUE(loopback.usable());
-}
-
-TEST(Loopback, ADriveThatIsSilentOnItAloneIsNotAskedAgainAndAgain)
-{
-  LoopbackKnowledge loopback(3);
-  for (int tries = 0; tries < 3; ++tries)
-  {
-    EXPECT_TRUE(loopback.usable());
-    loopback.note(wire::Outcome::Timeout);
-    loopback.otherAnswered();
-  }
-  EXPECT_FALSE(loopback.usable());
-  loopback.tryAgain();
-  EXPECT_TRUE(loopback.usable()) << "another drive may stand there after a return";
-}
-
-TEST(Loopback, OneThatHasWorkedIsTrustedAndARefusedOneIsNot)
-{
-  LoopbackKnowledge worked(3);
-  worked.note(wire::Outcome::Ok);
-  for (int tries = 0; tries < 10; ++tries)
-  {
-    worked.note(wire::Outcome::Timeout);
-    worked.otherAnswered();
-  }
-  EXPECT_TRUE(worked.usable());
-  LoopbackKnowledge refused(3);
-  refused.note(wire::Outcome::Exception);
-  EXPECT_FALSE(refused.usable());
-}
 /// An MX2 behind a Modbus TCP gateway.
 class Mx2BehindAGateway : public testing::Test
 {
@@ -244,10 +200,10 @@ TEST_F(Mx2BehindAGateway, theGatewaysCodeIsShown)
     inverter_.noteExchange(reply);
     inverter_.failed(at(0), reply.error_id);
   }
-  EXPECT_EQ("no reply in time (the gateway answered with exception E0H)", inverter_.status(at(0)).error_text);
+  EXPECT_EQ("no reply in time (the gateway answered with exception E0H)", statusOf(inverter_, at(0)).error_text);
   inverter_.noteExchange(lost());
   inverter_.failed(at(0), 0x0205);
-  EXPECT_EQ("no reply in time", inverter_.status(at(0)).error_text);
+  EXPECT_EQ("no reply in time", statusOf(inverter_, at(0)).error_text);
 }
 
 TEST(Vfs11BehindAGateway, refusesWith04OnlyWhileItSendsData)

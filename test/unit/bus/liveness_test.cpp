@@ -154,6 +154,20 @@ TEST(Liveness, timeInWhichNobodyLookedIsNoCreditForLater)
   EXPECT_TRUE(liveness.overdue(at(3101), Ms(100)));
 }
 
+TEST(Liveness, aDriveMayBeDeafUntilItIsHeardOrTheTimeHasPassed)
+{
+  Liveness liveness(3);
+  EXPECT_FALSE(liveness.mayBeDeaf(at(0)));
+  liveness.deafUntil(at(1000));
+  EXPECT_TRUE(liveness.mayBeDeaf(at(999)));
+  EXPECT_FALSE(liveness.mayBeDeaf(at(1000)));
+  liveness.heard();
+  EXPECT_FALSE(liveness.mayBeDeaf(at(500)));
+  liveness.deafUntil(at(2000));
+  liveness.complete(at(1500));
+  EXPECT_FALSE(liveness.mayBeDeaf(at(1500)));
+}
+
 TEST(Liveness, theDeafTimeOfAResetIsNotCounted)
 {
   Liveness liveness(3);

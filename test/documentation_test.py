@@ -349,5 +349,34 @@ class Documents(unittest.TestCase):
             self.assertNotIn('#', answer.stdout)
 
 
+class Architecture(unittest.TestCase):
+    """docs/architecture.md names every room and no file that is not there."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.text = read('docs/architecture.md')
+
+    def testEveryRoomIsInTheTable(self):
+        table = self.text[self.text.index('## Rooms'):self.text.index('## Threads')]
+        rooms = {cell for row in re.findall(r'^\| (`[^|]*`) \|', table, re.MULTILINE) for cell in re.findall(r'`([^`]+)`', row)}
+        folders = {os.path.relpath(path, os.path.join(ROOT, 'src')) for pattern in ('*', os.path.join('*', '*'))
+                   for path in glob.glob(os.path.join(ROOT, 'src', pattern)) if os.path.isdir(path)}
+        inside = {folder for folder in folders if os.path.dirname(folder) in ('simulation',)}
+        containers = {'wire'}
+        self.assertEqual(rooms, folders - inside - containers)
+
+    def testEveryPlaceToLookIsThere(self):
+        table = self.text[self.text.index('## Where to look'):]
+        places = [cell for row in re.findall(r'^\| [^|`]* \| (.*) \|$', table, re.MULTILINE)
+                  for cell in re.findall(r'`([\w/.<>]+/[\w/.<>]+)`', row)]
+        self.assertGreater(len(places), 20)
+        for place in places:
+            with self.subTest(place=place):
+                base = place.replace('<family>', '*')
+                found = [path for start in ('', 'src') for end in ('', '.h', '.cpp', '*.cpp')
+                         for path in glob.glob(os.path.join(ROOT, start, base + end))]
+                self.assertTrue(found, place + ' is not there')
+
+
 if __name__ == '__main__':
     unittest.main()

@@ -109,13 +109,13 @@ class Sources:
 
 
 class Memory:
-    """What was clean: a source and its key."""
+    """What was clean: a source and its key. Forgets sources that are no longer there."""
 
-    def __init__(self, path):
+    def __init__(self, path, sources):
         self._path = path
         try:
             with open(path) as stream:
-                self._keys = json.load(stream)
+                self._keys = {source: key for source, key in json.load(stream).items() if source in sources}
         except (OSError, ValueError):
             self._keys = {}
 
@@ -148,7 +148,7 @@ def split(output):
 
 def check(build, sources, chosen, rules):
     """Runs clang-tidy and prints what it finds, once; returns how many findings there are."""
-    memory = Memory(os.path.join(build, 'tidy_clean.json'))
+    memory = Memory(os.path.join(build, 'tidy_clean.json'), sources.commands)
     keys = {source: sources.key(source, rules) for source in chosen}
     new = [source for source in chosen if not memory.knows(source, keys[source])]
     start, seen = time.monotonic(), set()

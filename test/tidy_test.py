@@ -74,12 +74,14 @@ class Choice(Tree):
 
     def test_memory_outlives_a_run(self):
         path = os.path.join(self.root, 'memory.json')
-        tidy.Memory(path).add('src/a.cpp', 'key')
-        self.assertTrue(tidy.Memory(path).knows('src/a.cpp', 'key'))
-        self.assertFalse(tidy.Memory(path).knows('src/a.cpp', 'other'))
-        self.assertFalse(tidy.Memory(path).knows('src/b.cpp', 'key'))
+        sources = ('src/a.cpp', 'src/b.cpp')
+        tidy.Memory(path, sources).add('src/a.cpp', 'key')
+        self.assertTrue(tidy.Memory(path, sources).knows('src/a.cpp', 'key'))
+        self.assertFalse(tidy.Memory(path, sources).knows('src/a.cpp', 'other'))
+        self.assertFalse(tidy.Memory(path, sources).knows('src/b.cpp', 'key'))
+        self.assertFalse(tidy.Memory(path, ('src/b.cpp',)).knows('src/a.cpp', 'key'))
         self.write('memory.json', 'half a')
-        self.assertFalse(tidy.Memory(path).knows('src/a.cpp', 'key'))
+        self.assertFalse(tidy.Memory(path, sources).knows('src/a.cpp', 'key'))
 
 
 class Changes(Tree):

@@ -15,7 +15,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// The services of one bus as users call them. Who calls may leave \p answered empty.
+/// The services of one bus as users call them; \p answered may be empty.
 class Calls
 {
 public:

@@ -11,8 +11,8 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// Faults off, and everything must come back: every drive refreshed, every call answered, every lock releasable; every motor
-/// runs and stops.
+/// Faults off, and everything must come back: every drive refreshed, every call answered, every lock releasable; every
+/// motor runs and stops.
 class Calm
 {
 public:

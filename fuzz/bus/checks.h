@@ -33,9 +33,9 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// What one bus is checked by: the real drives, the record of what was seen from outside, and a check for each property. Checks
-/// read the record and know nothing of each other; the watches tell them what happens, in an order that matters: a check that
-/// compares with what was before comes ahead of the record.
+/// What one bus is checked by: the real drives, the record of what was seen from outside, and a check for each
+/// property. Checks read the record and know nothing of each other; the watches tell them what happens, in an order
+/// that matters: a check that compares with what was before comes ahead of the record.
 struct Checks
 {
   /// \p budget_warns the node warns that it can't serve an inverter within its communication time-out.

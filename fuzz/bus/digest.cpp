@@ -4,6 +4,9 @@
 
 #include <cstdio>
 #include <cstring>
+#include <tuple>
+
+#include "drive/monitor_fields.h"
 
 namespace inverter_bus
 {
@@ -141,22 +144,7 @@ std::string Digest::text() const
 
 void Digest::monitor(const drive::Monitor& monitor)
 {
-  for (const auto& flag : { monitor.run_seen, monitor.operation, monitor.running, monitor.ready, monitor.at_speed,
-                            monitor.at_set_frequency, monitor.overload_warning, monitor.pid_deviation, monitor.faulted,
-                            monitor.restarted })
-  {
-    decisions_.field(flag);
-  }
-  decisions_.field(monitor.direction);
-  decisions_.field(monitor.unknown_trip);
-  decisions_.field(monitor.raw_status);
-  decisions_.field(monitor.fault_code);
-  decisions_.field(monitor.warning_code);
-  for (const auto& value : { monitor.output_frequency, monitor.output_current, monitor.output_voltage,
-                             monitor.dc_voltage, monitor.torque, monitor.temperature })
-  {
-    decisions_.field(value);
-  }
+  std::apply([this](const auto&... field) { (decisions_.field(field), ...); }, drive::monitorFields(monitor));
 }
 
 void Digest::status(const bus::InverterStatus& status)

@@ -16,8 +16,8 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// FNV-1a over values, in the order in which they come. Doubles count by their bits, so two digests compare only where the
-/// same machine and compiler made both.
+/// FNV-1a over values, in the order in which they come. Doubles count by their bits, so two digests compare only where
+/// the same machine and compiler made both.
 class Hash
 {
 public:
@@ -43,9 +43,9 @@ private:
   std::uint64_t value_ = 0xCBF29CE484222325ULL;
 };
 
-/// What a story looks like from outside, as three numbers: the frames on the wire; what was decided (results of commands,
-/// statuses and answers without their texts); and the texts. A change that only moves code keeps all three, one that only
-/// rewords messages keeps the first two.
+/// What a story looks like from outside, as three numbers: the frames on the wire; what was decided (results of
+/// commands, statuses and answers without their texts); and the texts. A change that only moves code keeps all three,
+/// one that only rewords messages keeps the first two.
 class Digest
 {
 public:

@@ -13,8 +13,8 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// What a request of the master asks of a drive, read from its bytes and the drives' manuals alone: no profile and no line
-/// of the driver takes part.
+/// What a request of the master asks of a drive, read from its bytes and the drives' manuals alone: no profile and no
+/// line of the driver takes part.
 struct RequestFacts
 {
   /// Index of the inverter; nothing: a broadcast, or a station that is not on the bus.
@@ -35,7 +35,8 @@ struct RequestFacts
   bool reads_frequency = false;
   bool reads_run = false;        ///< the RUN command as the drive holds it from the bus
   bool reads_parameter = false;  ///< no status: settings, trip memory, parameters
-  /// Tells the drive once after it has come how it is to work (VF-S15: FA87); in the lowest class, as settings are read.
+  /// Tells the drive once after it has come how it is to work (VF-S15: FA87); in the lowest class, as settings are
+  /// read.
   bool writes_setting = false;
   unsigned address = 0;
 

@@ -13,8 +13,8 @@ namespace fuzz
 class Harm
 {
 public:
-  /// \p refuses drives refuse requests; otherwise replies of another kind come. (A refusal that is then made another request's
-  /// answer would look like the right one.)
+  /// \p refuses drives refuse requests; otherwise replies of another kind come. (A refusal that is then made another
+  /// request's answer would look like the right one.)
   Harm(Stage& stage, Streams& streams, bool refuses);
 
   /// Something fails.

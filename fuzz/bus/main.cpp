@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 
-// The whole core in virtual time against simulated drives: users and faults by chance, every rule watched from the outside.
-// docs/fuzzing.md
+// The whole core in virtual time against simulated drives: users and faults by chance, every rule watched from the
+// outside. docs/fuzzing.md
 
 #include <unistd.h>
 

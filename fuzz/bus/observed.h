@@ -134,7 +134,8 @@ struct Observed
   Duration quiet() const;
   /// How much longer than usual the line may be listened to before a request.
   Duration babble(TimePoint now) const;
-  /// What goes at \p now may have been decided before \p time: what comes late in the silence before a frame prolongs it.
+  /// What goes at \p now may have been decided before \p time: what comes late in the silence before a frame prolongs
+  /// it.
   bool decidedBefore(TimePoint now, TimePoint time) const;
   /// A frame that is due waits no longer than this: an exchange in flight, the gap, and what a broadcast takes.
   Duration longestWait(TimePoint now) const;

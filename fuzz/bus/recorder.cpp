@@ -25,7 +25,7 @@ const Observed& Recorder::observed() const
   return observed_;
 }
 
-// --- the line ------------------------------------------------------------------------------------------------------------
+// --- the line --------------------------------------------------------------------------------------------------------
 
 void Recorder::opened(TimePoint now)
 {
@@ -95,7 +95,7 @@ void Recorder::sent(TimePoint now)
     const bool counts = !exchange.repeats_run && inverter.order.valid && !exchange.precedes_command;
     words.run_copies += counts ? 1 : 0;
     words.run_sent = true;
-    // Whatever ran before, nobody knows until this one is answered.
+    // Whether it runs is unknown until this one is answered.
     words.run_answered = words.run_answered && exchange.repeats_run;
   }
   // Words in force that are repeated with a refresh are no copies.
@@ -136,7 +136,7 @@ void Recorder::ended(TimePoint now)
   inverter.link.lost_at = facts.expects_reply ? now : inverter.link.lost_at;
   if (facts.set_hertz)
   {
-    // Nobody knows which set-point it has now.
+    // Which set-point it has now is unknown.
     inverter.words.set_answered.reset();
   }
 }
@@ -156,8 +156,8 @@ void Recorder::reached(TimePoint now, std::size_t index, const simulation::Bytes
 
 ReplyFacts Recorder::replied(TimePoint now, const simulation::FrameRecord& frame, std::size_t index)
 {
-  // A reply that bears another drive's station, and the shape of what that one was asked and has not answered yet, can't be
-  // told from its late reply.
+  // A reply that bears another drive's station, and the shape of what that one was asked and has not answered yet,
+  // can't be told from its late reply.
   const auto bearer = bearerOf(scene_, frame.bytes);
   if (bearer && *bearer != index)
   {
@@ -237,12 +237,12 @@ void Recorder::noteWords(std::size_t index, bool good)
   words.settled = good && (words.settled || (facts.commands() && complete));
 }
 
-// --- users -----------------------------------------------------------------------------------------------------------------
+// --- users -----------------------------------------------------------------------------------------------------------
 
 void Recorder::booked(TimePoint now, std::size_t index, const bus::Publisher& publisher, bool zero)
 {
   Stream& stream = observed_.inverters[index].streams[publisher.name];
-  // Near zero is silence: who has sent nothing else yet has no spacing.
+  // Near zero is silence: a publisher that has sent nothing else yet has no spacing.
   stream.spacing = stream.last != TimePoint() ? now - stream.last : Duration{ 0 };
   stream.last = now;
   stream.zeroed_at = zero ? now : stream.zeroed_at;
@@ -293,7 +293,7 @@ void Recorder::shutdownBegun()
   observed_.shutting_down = true;
 }
 
-// --- the drives, and what is published of them -----------------------------------------------------------------------------
+// --- the drives, and what is published of them -----------------------------------------------------------------------
 
 void Recorder::lostPower(TimePoint now, std::size_t index)
 {

@@ -27,8 +27,8 @@ struct ReplyFacts
   bool good = false;  ///< an Answer that is no refusal
   unsigned refusal = 0;
 
-  /// After a read of RUN nothing more can be learned of it. Refusals 1 to 3: the drive has no such read, and the acknowledged
-  /// write has to do.
+  /// After a read of RUN nothing more can be learned of it. Refusals 1 to 3: the drive has no such read, and the
+  /// acknowledged write has to do.
   bool settlesRun() const
   {
     return good || refusal <= 3;
@@ -72,7 +72,7 @@ public:
   void stopRequested(std::size_t index);
   void shutdownBegun();
 
-  // --- the drives, and what is published of them ----------------------------------------------------------------------
+  // --- the drives, and what is published of them ---------------------------------------------------------------------
   void lostPower(TimePoint now, std::size_t index);
   void wentOffline(std::size_t index);
   void isOnline(const bus::InverterStatus& status);

@@ -18,7 +18,7 @@ void UserWatch::commanded(TimePoint now, const bus::VelocityCommand& command, st
 {
   checks_.commands.check(now, command, result);
   const Scene& scene = checks_.observed.scene;
-  // Nothing comes of a repeat, neither of what it carries for others.
+  // A repeat is ignored, with all that it carries for other inverters.
   const bool repeat = std::any_of(command.targets.begin(), command.targets.end(), [&](const auto& target) {
     return moves(scene.inverters[target.first], target.second) &&
            checks_.observed.isRepeat(target.first, command.publisher);
@@ -32,7 +32,7 @@ void UserWatch::commanded(TimePoint now, const bus::VelocityCommand& command, st
     }
     else if (isNearZero(scene.inverters[target.first], target.second))
     {
-      // For the lock it is as if nothing had come, but whoever sent it has been heard.
+      // For the lock it is as if nothing had come, but its publisher has been heard.
       checks_.recorder.bookedNearZero(target.first, command.publisher);
       takeRunOff(now, target.first);
     }
@@ -103,7 +103,7 @@ void UserWatch::stopRequested(TimePoint now, std::optional<std::size_t> index)
     }
     if (!checks_.observed.online(one))
     {
-      // It is tried once at once, then it is the probe.
+      // Its stop is tried once immediately, and after that is the probe.
       checks_.probes.allow(1.0);
     }
     checks_.lockUp(now, one, true);

@@ -21,8 +21,8 @@ public:
   explicit UserWatch(Checks& checks);
 
   void commanded(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result);
-  /// A stop is about to be called for, of one or of all, and must be answered within \p bound [s]; what this returns is to be
-  /// given the answer.
+  /// A stop is about to be called for, of one or of all, and must be answered within \p bound [s]; what this returns is
+  /// to be given the answer.
   checks::Services::Callback stopCalled(TimePoint now, std::optional<std::size_t> index, double bound);
   /// The node knows of it.
   void stopRequested(TimePoint now, std::optional<std::size_t> index);

@@ -33,7 +33,7 @@ public:
   /// Time passes without the driver.
   void pass(Duration duration);
 
-  // --- users ----------------------------------------------------------------------------------------------------------
+  // --- users ---------------------------------------------------------------------------------------------------------
   std::uint16_t command(const bus::VelocityCommand& command);
   Calls& calls();
   /// The program is ended: from now on motors are only stopped.
@@ -42,7 +42,7 @@ public:
   /// Judges what is left of it.
   void endShutdown(TimePoint begun);
 
-  // --- the world ------------------------------------------------------------------------------------------------------
+  // --- the world -----------------------------------------------------------------------------------------------------
   /// A command of the simulated bus; where it can't happen now, nothing does.
   void provoke(const std::string& command);
   void cutPower(std::size_t index, double duration);

@@ -63,7 +63,7 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 
 void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found)
 {
-  bus_.line_watch.note(now, counters, echo_found);
+  bus_.line_watch.note(now, counters, echo_found, bus_.line.gatewayQuirk());
 }
 
 void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)

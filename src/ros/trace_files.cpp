@@ -29,17 +29,19 @@ namespace
 {
 namespace fs = std::filesystem;
 
-constexpr Duration AUTOMATIC_PERIOD = std::chrono::seconds(10);
 constexpr Duration ASKED_PERIOD = std::chrono::seconds(1);
 constexpr std::size_t FILES_KEPT = 50;
 constexpr std::size_t LONGEST_REASON = 60;
+// Leaves room for the rest in the 255 bytes that a file's name may have.
+constexpr std::size_t LONGEST_NODE_NAME = 120;
 const char* const EXTENSION = ".txt";
-/// In a file's name, between its number and the reason. A reason has no '-', so that it can't look like this.
+/// In a file's name, between its number and the reason. Neither a node's name nor a reason has a '-', so that they can't look
+/// like this.
 const char* const AUTOMATIC = "-";
 const char* const ASKED = "-asked-";
 
 /// \p text with everything but letters and digits made a single '_', so that it can't leave the directory.
-std::string safeName(const std::string& text)
+std::string safeReason(const std::string& text)
 {
   std::string name;
   for (const char character : text)
@@ -59,6 +61,25 @@ std::string safeName(const std::string& text)
     name.pop_back();
   }
   return name;
+}
+
+/// \p node_name without its first '/', each other '/' a '.', which no name of a node has: those of two nodes differ. What no
+/// name of a node has either is made '_', so that the result can't leave the directory.
+std::string safeNodeName(const std::string& node_name)
+{
+  std::string name = node_name.substr(std::min(node_name.find_first_not_of('/'), node_name.size()));
+  for (char& character : name)
+  {
+    if (character == '/')
+    {
+      character = '.';
+    }
+    else if (std::isalnum(static_cast<unsigned char>(character)) == 0)
+    {
+      character = '_';
+    }
+  }
+  return name.substr(0, LONGEST_NODE_NAME);
 }
 
 bool startsAndEndsWith(const std::string& name, const std::string& start, const std::string& end)
@@ -129,7 +150,7 @@ std::string expandHome(const std::string& path)
 }
 
 TraceFiles::TraceFiles(const std::string& directory, const std::string& node_name, Log log)
-  : directory_(expandHome(directory)), prefix_(safeName(node_name) + "-"), log_(std::move(log))
+  : directory_(expandHome(directory)), prefix_(safeNodeName(node_name) + "-"), log_(std::move(log))
 {
   thread_ = std::thread([this] { work(); });
 }
@@ -143,12 +164,10 @@ void TraceFiles::writeSoon(bus::TraceDump dump)
 {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const TimePoint now = std::chrono::steady_clock::now();
-    if (stopping_ || waiting_ || (last_automatic_ && now - *last_automatic_ < AUTOMATIC_PERIOD))
+    if (stopping_ || waiting_)
     {
       return;
     }
-    last_automatic_ = now;
     waiting_ = std::move(dump);
   }
   changed_.notifyOne();
@@ -251,7 +270,7 @@ std::string TraceFiles::newPath(const std::string& kind, const std::string& reas
   char number[16];
   std::snprintf(number, sizeof number, "-%04u", ++number_ % 10000U);
   const std::string name =
-      prefix_ + fileStamp(std::chrono::system_clock::now()) + number + kind + safeName(reason) + EXTENSION;
+      prefix_ + fileStamp(std::chrono::system_clock::now()) + number + kind + safeReason(reason) + EXTENSION;
   return (fs::path(directory_) / name).string();
 }
 

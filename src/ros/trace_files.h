@@ -33,7 +33,7 @@ public:
   };
 
   /// \param directory as configured; made when the first file is written
-  /// \param node_name in the files' names, so that several buses can share a directory
+  /// \param node_name in the files' names, each '/' inside it a '.', so that several buses can share a directory
   /// \param log gets one line for each file, or one that says why there is none; any thread
   TraceFiles(const std::string& directory, const std::string& node_name, Log log);
   /// As stop().
@@ -42,7 +42,8 @@ public:
   TraceFiles(const TraceFiles&) = delete;
   TraceFiles& operator=(const TraceFiles&) = delete;
 
-  /// Writes \p dump soon, but at most one file per 10 s; does not block. Any thread.
+  /// Writes \p dump soon; does not block. How often that may be is the caller's (bus::FlightRecorder); one that comes while
+  /// another waits for a slow disk is left out. Any thread.
   void writeSoon(bus::TraceDump dump);
 
   /// Writes what \p record gives now because somebody asks for it, but at most one file per second: else the last one that
@@ -74,7 +75,6 @@ private:
   mutable std::mutex mutex_;
   util::SteadyCondition changed_;
   std::optional<bus::TraceDump> waiting_;
-  std::optional<TimePoint> last_automatic_;
   std::optional<File> last_;
   bool stopping_ = false;
   std::thread thread_;

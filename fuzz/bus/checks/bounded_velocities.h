@@ -13,8 +13,8 @@ namespace fuzz
 {
 namespace checks
 {
-/// Contract, 8.1: a velocity is bounded whatever follows it. After 1 + retries lost frames of an inverter that may run a stop is
-/// next. SetPoints and RunFrames count the copies of one velocity; here newer ones may have come meanwhile.
+/// Contract, 8.1: a velocity is bounded whatever follows it. After 1 + retries lost frames of an inverter that may run
+/// a stop is next. SetPoints and RunFrames count the copies of one velocity; here newer ones may have come meanwhile.
 class BoundedVelocities
 {
 public:

@@ -34,7 +34,8 @@ void ConfirmedStops::check(TimePoint now, std::size_t index, TimePoint asked_at)
   }
   const Brand brand = observed_.scene.inverters[index].brand;
   const bool tells = brand == Brand::HITACHI || brand == Brand::TOSHIBA;
-  // A 3G3JE tells neither its RUN nor which request it answers: there another drive's late reply under its station passes.
+  // A 3G3JE tells neither its RUN nor which request it answers: there another drive's late reply under its station
+  // passes.
   const bool imitated = observed_.scene.compoway && inverter.link.imitated_at >= asked_at;
   if (inverter.stop.acknowledged < asked_at && run_read_[index] < asked_at && !imitated)
   {

@@ -15,8 +15,8 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rule 3.3: a stop that is answered with success was acknowledged, RUN was read as off where the drive can tell, and it is
-/// off.
+/// Rule 3.3: a stop that is answered with success was acknowledged, RUN was read as off where the drive can tell, and
+/// it is off.
 class ConfirmedStops
 {
 public:

@@ -11,8 +11,8 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rules 3.1, 3.3 and 3.8: one request at a time, silence before it, time for its reply, and broadcasts only where they are
-/// safe.
+/// Rules 3.1, 3.3 and 3.8: one request at a time, silence before it, time for its reply, and broadcasts only where they
+/// are safe.
 class Line
 {
 public:

@@ -18,14 +18,15 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rule 4.2, from the messages alone: a lock is not forgotten. After a start, a stop, a trip or an offline phase each publisher
-/// must have sent 0, or have been silent, before its velocity is accepted.
+/// Rule 4.2, from the messages alone: a lock is not forgotten. After a start, a stop, a trip or an offline phase each
+/// publisher must have sent 0, or have been silent, before its velocity is accepted.
 class Locks
 {
 public:
   Locks(const Observed& observed, TimePoint start);
 
-  /// Everybody must return to neutral; \p by_stop: once a stop is confirmed. \p stop_under_way: one had been sent before.
+  /// Everybody must return to neutral; \p by_stop: once a stop is confirmed. \p stop_under_way: one had been sent
+  /// before.
   void lock(TimePoint now, std::size_t index, bool by_stop, bool stop_under_way);
   /// The drive did something by itself at \p since, and the lock is that old.
   void backdate(std::size_t index, TimePoint since);

@@ -29,7 +29,7 @@ void LowestClass::check(TimePoint now)
   const RequestFacts& facts = observed_.exchange.facts;
   const bool waiting = anyoneWaits(now);
   const bool counts = facts.reads && !facts.reads_run && !facts.loopback;
-  // One that a drive is told, and that it refuses for a while, has had the turn of one that is to be read.
+  // A setting that is written, and refused for a while, has had the turn of one that waits to be read.
   const bool its_turn = facts.reads_parameter || facts.writes_setting || clearsLineForSetting(now);
   if (!waiting || !counts || its_turn)
   {
@@ -57,7 +57,7 @@ bool LowestClass::anyoneWaits(TimePoint now) const
   {
     const InverterRecord& inverter = observed_.inverters[index];
     const TimePoint lost_at = inverter.link.lost_at;
-    // Nobody asks a drive that is deaf after its reset.
+    // A drive that is deaf after its reset is not asked.
     const bool undisturbed =
         (lost_at == TimePoint() || now - lost_at > seconds(BARRED_S)) && now > inverter.link.deaf_until;
     if (undisturbed && lanes_[index].first_time && inverter.told.online && hasUnreadSettings(index))

@@ -14,7 +14,8 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rule 3.14, for the time until each drive's settings have been read once: the lowest class gets every eighth exchange.
+/// Rule 3.14, for the time until each drive's settings have been read once: the lowest class gets every eighth
+/// exchange.
 class LowestClass
 {
 public:

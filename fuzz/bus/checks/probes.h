@@ -13,8 +13,8 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rule 3.7: probes of dead drives take at most 5 % of the time. A bucket that fills at that rate; what the first probes of each
-/// inverter cost is allowed for when it goes offline.
+/// Rule 3.7: probes of dead drives take at most 5 % of the time. A bucket that fills at that rate; what the first
+/// probes of each inverter cost is allowed for when it goes offline.
 class Probes
 {
 public:

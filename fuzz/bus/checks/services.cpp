@@ -25,7 +25,7 @@ Services::Services(const Observed& observed, const Plant& plant, const util::Clo
 {
 }
 
-Services::Callback Services::asked(const std::string& what, double bound, Callback judge)
+Services::Callback Services::asked(const std::string& what, double bound, const Callback& judge)
 {
   const std::uint64_t id = ++total_;
   calls_[id] = { what, clock_.now() + seconds(bound + SLACK_S) };

@@ -27,9 +27,9 @@ public:
 
   Services(const Observed& observed, const Plant& plant, const util::Clock& clock);
 
-  /// A call that has to be answered within \p bound [s]; what it returns is to be given the answer. \p judge (may be empty) looks
-  /// at that of a call that succeeded.
-  Callback asked(const std::string& what, double bound, Callback judge);
+  /// A call that has to be answered within \p bound [s]; what it returns is to be given the answer. \p judge (may be
+  /// empty) looks at that of a call that succeeded.
+  Callback asked(const std::string& what, double bound, const Callback& judge);
   Callback resetAsked(std::size_t index, double bound);
   /// Of the parameter that nobody writes.
   Callback readAsked(std::size_t index, double bound);

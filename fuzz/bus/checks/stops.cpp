@@ -14,7 +14,7 @@ namespace checks
 {
 namespace
 {
-// Who stops again and again what is at rest lets other exchanges through.
+// A user who keeps stopping what is at rest must let other exchanges through.
 constexpr unsigned FLOOD = 4;
 constexpr double FLOOD_PAUSE_S = 1.0;
 }  // namespace

@@ -15,7 +15,8 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rules 3.1 and 4.3: a stop is the next frame on the wire, and its first byte goes within the exchange in flight plus the gap.
+/// Rules 3.1 and 4.3: a stop is the next frame on the wire, and its first byte goes within the exchange in flight plus
+/// the gap.
 class Stops
 {
 public:

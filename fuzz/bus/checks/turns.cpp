@@ -60,8 +60,8 @@ bool Turns::isOfStop() const
   return facts.stop || inverter.stop.active || (facts.loopback && !inverter.order.valid);
 }
 
-/// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent; or its
-/// own time-out is near.
+/// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent;
+/// or its own time-out is near.
 bool Turns::waits(TimePoint now, std::size_t index) const
 {
   const InverterRecord& inverter = observed_.inverters[index];

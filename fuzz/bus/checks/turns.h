@@ -15,8 +15,9 @@ namespace fuzz
 {
 namespace checks
 {
-/// Contract, 8.1: but for stops, an inverter that did not answer gets no second exchange while another one waits or has a
-/// deadline. (Answered frames that belong together are short; that they alternate is held by the scheduler's own tests.)
+/// Contract, 8.1: but for stops, an inverter that did not answer gets no second exchange while another one waits or has
+/// a deadline. (Answered frames that belong together are short; that they alternate is held by the scheduler's own
+/// tests.)
 class Turns
 {
 public:

@@ -20,7 +20,7 @@ constexpr std::size_t KEPT_READS = 64;
 constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may stand beside the refresh's
 constexpr double KEPT_SAMPLES_S = 3.0;
 constexpr double OLDEST_SLOW_VALUE_S = 1.0;  // contract, section 2
-constexpr double TORQUE_TOLERANCE = 1.5;     // [%] of rated: drives tell whole percents
+constexpr double TORQUE_TOLERANCE = 1.5;     // [%] of rated: drives report whole percents
 constexpr double MEMORY_OF_LATE_S = 2.0;     // the longest bar, and the exchange that it lets through
 }  // namespace
 

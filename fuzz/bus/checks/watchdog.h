@@ -19,8 +19,8 @@ class Watchdog
 public:
   explicit Watchdog(const Observed& observed);
 
-  /// When the command watchdog of an inverter ran out, as seen by what is sent \p now; nothing: it has not. The node looks at
-  /// its watchdogs before each exchange.
+  /// When the command watchdog of an inverter ran out, as seen by what is sent \p now; nothing: it has not. The node
+  /// looks at its watchdogs before each exchange.
   std::optional<TimePoint> expired(TimePoint now, std::size_t index) const;
   void checkOverdue(TimePoint now, std::size_t index) const;
 

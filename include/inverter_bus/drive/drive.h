@@ -26,16 +26,16 @@ struct Monitor
   std::optional<bool> run_seen;  ///< the RUN command that the drive holds from the bus
   std::optional<bool> operation;
   std::optional<bool> running;
-  std::optional<int> direction;  ///< -1, 0, 1
   std::optional<bool> ready;
   std::optional<bool> at_speed;
   std::optional<bool> at_set_frequency;
   std::optional<bool> overload_warning;
   std::optional<bool> pid_deviation;
   std::optional<bool> faulted;
+  std::optional<bool> restarted;  ///< the drive has forgotten what it was told since the last return
+  std::optional<int> direction;   ///< -1, 0, 1
   /// Raw value of \ref faulted that means nothing in the profile; \ref faulted is then empty. Counts as a trip.
   std::optional<std::uint32_t> unknown_trip;
-  std::optional<bool> restarted;  ///< the drive has forgotten what it was told since the last return
   std::optional<std::uint32_t> raw_status;
   std::optional<std::uint16_t> fault_code;
   std::optional<std::uint32_t> warning_code;

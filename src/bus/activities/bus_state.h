@@ -32,7 +32,8 @@ struct BusState
   BusState(const Configuration& the_configuration, const wire::Line& the_line);
 
   const Configuration& configuration;
-  /// Only questions without side effects, and only from what the bus thread calls.
+  /// Only questions without side effects, and only from what the bus thread calls; what users ask for and what is told to them
+  /// knows of the line what line_watch has copied.
   const wire::Line& line;
   /// Of the configuration alone: it does not change while the bus runs.
   const Budget::Figures budget;

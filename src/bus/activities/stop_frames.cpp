@@ -21,7 +21,7 @@ bool Stops::broadcastIsSafe() const
   };
   // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
   return bus_.connected && bus_.inverters.size() > 1 && !stop_frame(first).empty() &&
-         bus_.line.gatewayQuirk().empty() &&
+         bus_.line_watch.gatewayQuirk().empty() &&
          std::all_of(bus_.inverters.begin(), bus_.inverters.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
            return profile.name == first.profile().name && profile.broadcast_stop && !inverter->config.ownPort() &&

@@ -45,9 +45,9 @@ void Stops::stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t m
   Call call;
   call.callback = std::move(callback);
   call.expires = now + seconds(serviceBounds(bus_).stop);
-  const StopMode wanted =
-      mode <= static_cast<std::uint8_t>(StopMode::Quick) ? static_cast<StopMode>(mode) : StopMode::Decelerate;
-  bool fell_back = mode > static_cast<std::uint8_t>(StopMode::Quick);
+  const std::optional<StopMode> known = stopModeOf(mode);
+  const StopMode wanted = known.value_or(StopMode::Decelerate);
+  bool fell_back = !known;
   for (const auto& inverter : bus_.inverters)
   {
     if (index && *index != inverter->index)

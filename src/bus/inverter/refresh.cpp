@@ -3,6 +3,9 @@
 #include "bus/inverter/refresh.h"
 
 #include <algorithm>
+#include <tuple>
+
+#include "drive/monitor_fields.h"
 
 namespace inverter_bus
 {
@@ -26,6 +29,12 @@ void take(const std::optional<T>& from, std::optional<T>& to)
   }
 }
 
+template <typename... Field>
+void takeEach(const std::tuple<const Field&...>& from, const std::tuple<Field&...>& to)
+{
+  std::apply([&to](const auto&... value) { std::apply([&](auto&... kept) { (take(value, kept), ...); }, to); }, from);
+}
+
 unsigned lastAddress(const drive::Item& item)
 {
   return item.address + item.size - 1U;
@@ -39,27 +48,7 @@ bool carries(const drive::ReadBlock& block, const char* field)
 
 void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
 {
-  take(from.run_seen, to.run_seen);
-  take(from.operation, to.operation);
-  take(from.running, to.running);
-  take(from.direction, to.direction);
-  take(from.ready, to.ready);
-  take(from.at_speed, to.at_speed);
-  take(from.at_set_frequency, to.at_set_frequency);
-  take(from.overload_warning, to.overload_warning);
-  take(from.pid_deviation, to.pid_deviation);
-  take(from.faulted, to.faulted);
-  take(from.unknown_trip, to.unknown_trip);
-  take(from.restarted, to.restarted);
-  take(from.raw_status, to.raw_status);
-  take(from.fault_code, to.fault_code);
-  take(from.warning_code, to.warning_code);
-  take(from.output_frequency, to.output_frequency);
-  take(from.output_current, to.output_current);
-  take(from.output_voltage, to.output_voltage);
-  take(from.dc_voltage, to.dc_voltage);
-  take(from.torque, to.torque);
-  take(from.temperature, to.temperature);
+  takeEach(drive::monitorFields(from), drive::monitorFields(to));
 }
 
 std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive::ReadBlock& block)

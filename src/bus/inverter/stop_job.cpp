@@ -13,7 +13,39 @@ namespace
 // A stop that was confirmed so often in a row, and asked for again within so short a time, is one of a flood of them.
 constexpr unsigned FLOOD_OF_STOPS = 8;
 constexpr double FLOOD_PAUSE_S = 0.5;
+
+// What every drive with a confirmed stop command has.
+const char* const DECELERATION = "stop";
+
+const char* sequenceName(StopMode mode)
+{
+  // No default: a mode that is new in the enum doesn't compile before it has a sequence.
+  switch (mode)
+  {
+    case StopMode::Decelerate:
+      return DECELERATION;
+    case StopMode::Coast:
+      return "coast";
+    case StopMode::Quick:
+      return "quick";
+  }
+  return DECELERATION;
+}
 }  // namespace
+
+std::optional<StopMode> stopModeOf(std::uint8_t number)
+{
+  const auto mode = static_cast<StopMode>(number);
+  // No default: a mode that is new in the enum doesn't compile before it is here.
+  switch (mode)
+  {
+    case StopMode::Decelerate:
+    case StopMode::Coast:
+    case StopMode::Quick:
+      return mode;
+  }
+  return std::nullopt;
+}
 
 StopJob::StopJob(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
 {
@@ -21,15 +53,8 @@ StopJob::StopJob(const drive::Drive& drive, std::uint8_t station) : drive_(drive
 
 std::string StopJob::sequenceFor(StopMode mode) const
 {
-  if (mode == StopMode::Coast && drive_.sequence("coast") != nullptr)
-  {
-    return "coast";
-  }
-  if (mode == StopMode::Quick && drive_.sequence("quick") != nullptr)
-  {
-    return "quick";
-  }
-  return "stop";
+  const char* const own = sequenceName(mode);
+  return drive_.sequence(own) != nullptr ? own : DECELERATION;
 }
 
 const drive::Sequence* StopJob::sequence() const

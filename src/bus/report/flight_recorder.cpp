@@ -8,6 +8,7 @@ namespace bus
 {
 namespace
 {
+// Here alone: whoever writes the files takes what comes.
 constexpr double AUTOMATIC_DUMP_SPACING_S = 10.0;
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace
 constexpr double FOREIGN_SHOWN_S = 60.0;
 }  // namespace
 
-void LineWatch::note(TimePoint now, const wire::LineCounters& counters, bool echo_found)
+void LineWatch::note(TimePoint now, const wire::LineCounters& counters, bool echo_found, const std::string& quirk)
 {
   if (counters.foreign_frames != counters_.foreign_frames)
   {
@@ -19,6 +19,7 @@ void LineWatch::note(TimePoint now, const wire::LineCounters& counters, bool ech
   }
   counters_ = counters;
   echo_found_ = echo_found;
+  gateway_quirk_ = quirk;
 }
 
 const wire::LineCounters& LineWatch::counters() const
@@ -29,6 +30,11 @@ const wire::LineCounters& LineWatch::counters() const
 bool LineWatch::echoFound() const
 {
   return echo_found_;
+}
+
+const std::string& LineWatch::gatewayQuirk() const
+{
+  return gateway_quirk_;
 }
 
 std::optional<Finding> LineWatch::foreignFinding(TimePoint now, bool gateway) const

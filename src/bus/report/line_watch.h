@@ -18,17 +18,20 @@ namespace bus
 class LineWatch
 {
 public:
-  void note(TimePoint now, const wire::LineCounters& counters, bool echo_found);
+  /// \p quirk what the gateway does to numbers and units (Line::gatewayQuirk()); empty: nothing.
+  void note(TimePoint now, const wire::LineCounters& counters, bool echo_found, const std::string& quirk);
 
   const wire::LineCounters& counters() const;
   /// A local echo is removed.
   bool echoFound() const;
+  const std::string& gatewayQuirk() const;
   /// Somebody else polls on this line, or behind this gateway: seen within the last minute.
   std::optional<Finding> foreignFinding(TimePoint now, bool gateway) const;
 
 private:
   wire::LineCounters counters_;
   bool echo_found_ = false;
+  std::string gateway_quirk_;
   TimePoint foreign_at_;
 };
 }  // namespace bus

@@ -16,7 +16,7 @@ namespace
 using Target = std::pair<std::size_t, double>;
 
 /// Of a refused group: what stops, each inverter once. An exact 0 goes before one near it, since only it unlocks.
-std::vector<Target> stopsOf(std::vector<Target> targets, const Stops& stops)
+std::vector<Target> stopsOf(std::vector<Target> targets, const IsStop& stops)
 {
   std::stable_partition(targets.begin(), targets.end(), [](const Target& target) { return target.second == 0.0; });
   std::set<std::size_t> stopped;
@@ -42,7 +42,7 @@ void complain(VelocityGroup& group, const std::string& name, const char* why)
 }  // namespace
 
 VelocityGroup resolveGroup(const std::vector<std::string>& names, const std::vector<double>& velocities,
-                           const std::map<std::string, std::size_t>& index_by_name, const Stops& stops)
+                           const std::map<std::string, std::size_t>& index_by_name, const IsStop& stops)
 {
   VelocityGroup group;
   if (names.size() != velocities.size())

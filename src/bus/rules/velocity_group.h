@@ -26,11 +26,11 @@ struct VelocityGroup
 };
 
 /// Whether a velocity takes an inverter's RUN off: 0, or near it.
-using Stops = std::function<bool(std::size_t inverter, double velocity)>;
+using IsStop = std::function<bool(std::size_t inverter, double velocity)>;
 
 /// \p names and \p velocities as a message brought them, of any content and length.
 VelocityGroup resolveGroup(const std::vector<std::string>& names, const std::vector<double>& velocities,
-                           const std::map<std::string, std::size_t>& index_by_name, const Stops& stops);
+                           const std::map<std::string, std::size_t>& index_by_name, const IsStop& stops);
 }  // namespace bus
 }  // namespace inverter_bus
 

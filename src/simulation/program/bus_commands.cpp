@@ -411,6 +411,7 @@ const typename Actions::mapped_type& find(const Actions& actions, const std::str
   if (found == actions.end())
   {
     std::vector<std::string> allowed;
+    allowed.reserve(actions.size());
     for (const auto& action : actions)
     {
       allowed.push_back(action.first);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-// The only file that knows libmodbus. Used of it: sending with CRC and the RTS switching. Not used: its connect, which
+// The only file that knows libmodbus, which is here since the package is to send through it (contract, section 1).
+// Used of it: sending with CRC and the RTS switching. Not used: its connect, which
 // fails on a pseudo-terminal with parity, and its receiving, which takes any late reply of the same shape for the
 // answer.
 

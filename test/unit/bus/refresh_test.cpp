@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drive/monitor_fields.h"
 #include "support/bus_fixture.h"
 
 namespace inverter_bus
@@ -436,6 +439,23 @@ TEST(Refresh, mergingKeepsWhatIsKnownAndTakesWhatIsNew)
   EXPECT_EQ(to.run_seen, true);
   EXPECT_DOUBLE_EQ(to.output_current.value(), 2.0);
   EXPECT_DOUBLE_EQ(to.torque.value(), 3.0);
+}
+
+TEST(MergeMonitor, forgetsNoField)
+{
+  // That as many fields are listed as there are is asserted where the list is; none may stand for another.
+  const drive::Monitor empty;
+  const auto fields = drive::monitorFields(empty);
+  const auto places = std::apply(
+      [](const auto&... field) { return std::set<const void*>{ static_cast<const void*>(&field)... }; }, fields);
+  EXPECT_EQ(places.size(), std::tuple_size<decltype(fields)>::value);
+  drive::Monitor from;
+  std::apply([](auto&... field) { ((field = 1), ...); }, drive::monitorFields(from));
+  drive::Monitor to;
+  mergeMonitor(from, to);
+  const auto merged = drive::monitorFields(to);
+  std::apply([](const auto&... field) { EXPECT_TRUE((field && ...)); }, merged);
+  EXPECT_EQ(merged, drive::monitorFields(from));
 }
 }  // namespace
 }  // namespace bus

@@ -68,6 +68,17 @@ drive::Drive thatCannotTellRun(const drive::Drive& drive)
   return drive::Drive(profile);
 }
 
+TEST(StopModeOf, knowsTheModesOfTheServiceAndNoOtherNumber)
+{
+  EXPECT_EQ(stopModeOf(0), StopMode::Decelerate);
+  EXPECT_EQ(stopModeOf(1), StopMode::Coast);
+  EXPECT_EQ(stopModeOf(2), StopMode::Quick);
+  for (int number = 3; number <= 255; ++number)
+  {
+    EXPECT_EQ(stopModeOf(static_cast<std::uint8_t>(number)), std::nullopt) << number;
+  }
+}
+
 TEST_F(Mx2Stop, writesRunOffAndThenReadsItBack)
 {
   EXPECT_TRUE(stop_.pending());

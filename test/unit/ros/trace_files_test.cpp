@@ -9,8 +9,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -62,6 +64,23 @@ protected:
     return traces.writeAsked([&reason] { return dump(reason); }, now_, error);
   }
 
+  /// As the bus does it; each call has a reason of its own. Ends when the file is there.
+  static std::string writeAutomatic(TraceFiles& traces, const std::string& reason)
+  {
+    traces.writeSoon(dump(reason));
+    const TimePoint given_up = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (!traces.last() || traces.last()->reason != reason)
+    {
+      if (std::chrono::steady_clock::now() > given_up)
+      {
+        ADD_FAILURE() << "no file for " << reason;
+        return "";
+      }
+      std::this_thread::yield();
+    }
+    return traces.last()->path;
+  }
+
   std::vector<std::string> lines(bus::Level level) const
   {
     std::vector<std::string> texts;
@@ -85,7 +104,7 @@ TEST_F(TraceFilesTest, aFileHoldsTheFramesWithTheirTimes)
   TraceFiles traces(directory_.string(), "/cell/bus", log_);
   const fs::path path = write(traces, "belt_1 trip");
   EXPECT_EQ(directory_, path.parent_path());
-  EXPECT_THAT(path.filename().string(), testing::StartsWith("cell_bus-"));
+  EXPECT_THAT(path.filename().string(), testing::StartsWith("cell.bus-"));
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
   EXPECT_THAT(text.str(), HasSubstr("belt_1 trip"));
@@ -149,14 +168,46 @@ TEST_F(TraceFilesTest, theNewestFiftyOfANodeAreKept)
   EXPECT_TRUE(fs::exists(directory_ / "other-1.txt"));
 }
 
-TEST_F(TraceFilesTest, oneFileInTenSecondsIsWrittenByItself)
+TEST_F(TraceFilesTest, whatTheBusSendsIsWritten)
 {
+  // How often that is, the flight recorder decides.
   TraceFiles traces(directory_.string(), "/bus", log_);
-  traces.writeSoon(dump("trip"));
-  traces.writeSoon(dump("offline"));
+  const std::string first = writeAutomatic(traces, "trip");
+  EXPECT_NE(first, writeAutomatic(traces, "offline"));
   traces.stop();
-  EXPECT_EQ(1U, files());
+  EXPECT_EQ(2U, files());
   EXPECT_TRUE(lines(bus::Level::Warn).empty());
+}
+
+TEST_F(TraceFilesTest, filesOfNodesWithSimilarNamesAreKeptApart)
+{
+  std::set<std::string> prefixes;
+  const std::vector<std::string> names{ "/a/b", "/a_b", "/a/_b", "/a_/b", "/a__b", "/a/b/", "/a_b_", "/ab", "/A/b" };
+  for (const std::string& name : names)
+  {
+    TraceFiles traces(directory_.string(), name, log_);
+    const std::string file = fs::path(write(traces, "x")).filename().string();
+    prefixes.insert(file.substr(0, file.find('-')));
+  }
+  EXPECT_EQ(names.size(), prefixes.size()) << testing::PrintToString(prefixes);
+}
+
+TEST_F(TraceFilesTest, aNodePushesOutNoFileOfAnotherWithASimilarName)
+{
+  TraceFiles other(directory_.string(), "/a_b", log_);
+  const std::string kept = write(other, "x");
+  TraceFiles traces(directory_.string(), "/a/b", log_);
+  for (int i = 0; i < 52; ++i)
+  {
+    write(traces, "x");
+  }
+  EXPECT_TRUE(fs::exists(kept));
+}
+
+TEST_F(TraceFilesTest, theLongestNameOfANodeGivesAFile)
+{
+  TraceFiles traces(directory_.string(), "/" + std::string(300, 'n'), log_);
+  EXPECT_TRUE(fs::exists(write(traces, std::string(300, 'r'))));
 }
 
 TEST_F(TraceFilesTest, aFailureIsAWarningThatSaysWhatToDo)
@@ -200,17 +251,12 @@ TEST_F(TraceFilesTest, aFailureIsNotTakenForTheLastFile)
 
 TEST_F(TraceFilesTest, whatWasAskedForDoesNotPushOutWhatHappened)
 {
+  TraceFiles traces(directory_.string(), "/bus", log_);
   std::vector<std::string> automatic;
   for (int trip = 0; trip < 3; ++trip)
   {
-    // A new one each time: by itself it writes once in 10 s.
-    TraceFiles traces(directory_.string(), "/bus", log_);
-    traces.writeSoon(dump("asked-tripped " + std::to_string(trip)));
-    traces.stop();
-    ASSERT_TRUE(traces.last());
-    automatic.push_back(traces.last()->path);
+    automatic.push_back(writeAutomatic(traces, "asked-tripped " + std::to_string(trip)));
   }
-  TraceFiles traces(directory_.string(), "/bus", log_);
   for (int times = 0; times < 60; ++times)
   {
     write(traces, "dump_trace");

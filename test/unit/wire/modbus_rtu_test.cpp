@@ -280,6 +280,7 @@ TEST(ModbusCrc, hasTheCheckValueOfItsCatalogue)
   const std::string text = "123456789";
   const Bytes bytes(text.begin(), text.end());
   EXPECT_EQ(0x4B37, modbusCrc(bytes.data(), bytes.size()));
+  EXPECT_EQ(0xFFFF, modbusCrc(bytes.data(), 0));
 }
 
 class ModbusRtuTest : public testing::Test

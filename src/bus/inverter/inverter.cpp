@@ -230,7 +230,7 @@ Judgement Inverter::statusComplete(TimePoint now)
   liveness.complete(now);
   record.restart();
   interlock.online(now);
-  const Judgement judgement = compare(now, refresh.fresh(), refresh.freshSentAt(), true);
+  Judgement judgement = compare(now, refresh.fresh(), refresh.freshSentAt(), true);
   if (evidence.takeSourceDue(now, movement))
   {
     settings.commanded();

@@ -18,6 +18,19 @@ namespace inverter_bus
 {
 namespace bus
 {
+/// What a job has changed in the drive, or may have, however it ended: it is looked at again.
+struct Aftermath
+{
+  /// Name of the parameter that was written; empty: none.
+  std::string parameter;
+  /// The drive still has to be led out of its setup area.
+  bool leave_setup = false;
+  /// The drive may have forgotten what it was told at connect.
+  bool connect_again = false;
+  /// Nobody waits for the answer: it is logged under this name, and all settings are read again. Empty: somebody does.
+  std::string logged_as;
+};
+
 /// A service call that needs exchanges with one drive. A job is a sequence of single exchanges; the scheduler puts other
 /// things between them. It ends with an answer, at the latest when its bound is over.
 class Job
@@ -48,6 +61,29 @@ public:
     return false;
   }
 
+  /// The drive has been led into its setup area and not out of it again.
+  virtual bool inSetup() const
+  {
+    return false;
+  }
+
+  /// A frame has left after which the drive has forgotten its words.
+  virtual bool clearsWords() const
+  {
+    return false;
+  }
+
+  /// The exchange before was one after which the drive may be deaf (see the profile), for the first time.
+  virtual bool takeDeafening()
+  {
+    return false;
+  }
+
+  virtual Aftermath aftermath() const
+  {
+    return Aftermath();
+  }
+
   CommandKind kind() const;
   Duration pause() const;
   Answer& answer();
@@ -76,10 +112,10 @@ public:
   wire::Request next() override;
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
-  /// A reset frame has left: the drive may be deaf for a while and has forgotten its words.
-  bool resetting() const;
-  /// The exchange before was a step of the reset that the drive may have taken, for the first time: its deafness begins now.
-  bool takeDeafening();
+  /// A reset frame has left.
+  bool clearsWords() const override;
+  bool takeDeafening() override;
+  Aftermath aftermath() const override;
 
 private:
   enum class Phase
@@ -150,9 +186,8 @@ public:
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
   bool needsRest() const override;
-  /// The drive has been led into its setup area and not out of it again.
-  bool inSetup() const;
-  const drive::Parameter& parameter() const;
+  bool inSetup() const override;
+  Aftermath aftermath() const override;
 
 private:
   enum class Phase
@@ -194,6 +229,7 @@ public:
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
   bool needsRest() const override;
+  Aftermath aftermath() const override;
 
 private:
   std::vector<std::pair<std::string, std::uint32_t>> wanted_;

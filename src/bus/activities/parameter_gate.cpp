@@ -99,7 +99,7 @@ WriteVerdict checkWrite(const drive::Drive& drive, const std::string& name, doub
   {
     return refusal(ERROR_NOT_OFFERED, why);
   }
-  const WriteVerdict lacking = unarmed(drive, name, known->second);
+  WriteVerdict lacking = unarmed(drive, name, known->second);
   if (lacking.error_id != 0)
   {
     return lacking;

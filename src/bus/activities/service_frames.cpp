@@ -67,11 +67,9 @@ void Services::sent(const InFlight& current)
   const auto job = jobs_.find(current.job);
   if (current.purpose == Purpose::Job && job != jobs_.end())
   {
-    const auto* write = dynamic_cast<const WriteParameterJob*>(job->second.job.get());
-    Inverter& inverter = *bus_.inverters[current.inverter];
-    if (write != nullptr && write->inSetup())
+    if (job->second.job->inSetup())
     {
-      inverter.services.setupOpened();
+      bus_.inverters[current.inverter]->services.setupOpened();
     }
   }
 }
@@ -134,29 +132,24 @@ void Services::doneStep(TimePoint now, const InFlight& current)
 /// However a job ends: what it may have changed in the drive is looked at again.
 void Services::noteEnd(Inverter& inverter, const Job& job, const Answer& result)
 {
-  if (const auto* write = dynamic_cast<const WriteParameterJob*>(&job))
+  const Aftermath aftermath = job.aftermath();
+  if (!aftermath.parameter.empty())
   {
-    inverter.parameterWritten(write->parameter().name);
+    inverter.parameterWritten(aftermath.parameter);
     inverter.services.setupLeft();
-    if (write->inSetup())
-    {
-      inverter.settings.leaveSetup();
-    }
-    if (write->parameter().setup)
-    {
-      // Leaving the setup area may have made the drive forget what it was told at connect.
-      inverter.settings.connectAgain();
-    }
   }
-  const auto* reset = dynamic_cast<const ResetJob*>(&job);
-  if (reset != nullptr && reset->resetting())
+  if (aftermath.leave_setup)
+  {
+    inverter.settings.leaveSetup();
+  }
+  if (aftermath.connect_again)
   {
     inverter.settings.connectAgain();
   }
-  if (dynamic_cast<const ConfigureBlockJob*>(&job) != nullptr)
+  if (!aftermath.logged_as.empty())
   {
     bus_.outbox.log(result.success ? Level::Ok : Level::Warn,
-                    inverter.config.name + ": configure_block: " + result.message);
+                    inverter.config.name + ": " + aftermath.logged_as + ": " + result.message);
     inverter.settings.restart();
   }
 }
@@ -165,11 +158,9 @@ void Services::advance(TimePoint now, CommandId id, Job::Progress progress)
 {
   Running& running = jobs_.at(id);
   Inverter& inverter = *bus_.inverters[running.inverter];
-  auto* reset = dynamic_cast<ResetJob*>(running.job.get());
-  if (reset != nullptr && reset->resetting())
+  if (running.job->clearsWords())
   {
-    // Resetting clears the drive's words, and it may be deaf for a while.
-    if (reset->takeDeafening())
+    if (running.job->takeDeafening())
     {
       inverter.liveness.deafUntil(now + seconds(inverter.drive.profile().deaf_after_reset));
     }

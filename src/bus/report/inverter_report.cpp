@@ -35,8 +35,9 @@ void showError(const Inverter& inverter, TimePoint now, InverterStatus& status)
   if (inverter.link.offline() && exchange_failed && !inverter.command_error.countsWhileOffline())
   {
     showExchangeError(inverter, status);
+    return;
   }
-  else if (inverter.lost_writes.raised())
+  if (inverter.lost_writes.raised())
   {
     status.error_id = wire::ERROR_TIMEOUT;
     status.error_text = inverter.lost_writes.text();

@@ -73,7 +73,7 @@ TEST_F(Reset, sendsNothingWhileRunIsOnAndAsksForAStop)
 {
   ASSERT_EQ(frame(job_), READ_RUN);
   EXPECT_EQ(job_.done(RUN_IS_ON), Progress::NeedsStop);
-  EXPECT_FALSE(job_.resetting());
+  EXPECT_FALSE(job_.clearsWords());
   EXPECT_EQ(frame(job_), READ_RUN) << "RUN is read back again after the stop";
 }
 
@@ -103,7 +103,7 @@ TEST_F(Reset, failsWithoutSendingAnythingWhenRunCannotBeRead)
   EXPECT_EQ(job_.lost(lost()), Progress::Done);
   EXPECT_FALSE(job_.answer().success);
   EXPECT_EQ(job_.answer().error_id, 0x0205);
-  EXPECT_FALSE(job_.resetting());
+  EXPECT_FALSE(job_.clearsWords());
 }
 
 TEST_F(Reset, failsWithoutSendingAnythingWhenTheReadOfRunIsRefused)
@@ -154,7 +154,7 @@ TEST_F(Reset, takesTheResetCoilBackWhenTheDriveIsDeafFromTheResetOn)
   job_.done(RUN_IS_OFF);
   ASSERT_EQ(frame(job_), RESET_ON);
   EXPECT_EQ(job_.lost(lost()), Progress::GoesOn) << "the frame has left: the coil may be on, and nobody takes it back";
-  EXPECT_TRUE(job_.resetting());
+  EXPECT_TRUE(job_.clearsWords());
 }
 
 TEST_F(Reset, bearsADeafDriveWhileItReadsTheTrip)
@@ -174,13 +174,13 @@ TEST_F(Reset, bearsADeafDriveWhileItReadsTheTrip)
 
 TEST_F(Reset, countsAsResettingFromTheFirstAcknowledgedFrame)
 {
-  EXPECT_FALSE(job_.resetting());
+  EXPECT_FALSE(job_.clearsWords());
   frame(job_);
   job_.done(RUN_IS_OFF);
-  EXPECT_FALSE(job_.resetting());
+  EXPECT_FALSE(job_.clearsWords());
   frame(job_);
   job_.done(RESET_ON_DONE);
-  EXPECT_TRUE(job_.resetting());
+  EXPECT_TRUE(job_.clearsWords());
 }
 
 TEST_F(Reset, refusedResetIsReportedInTheDrivesWords)

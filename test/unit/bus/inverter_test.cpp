@@ -69,6 +69,26 @@ protected:
     return "03 02 00 0C";
   }
 
+  /// A velocity whose words the drive has confirmed.
+  void run(double velocity)
+  {
+    inverter_.movement.aim(inverter_.movement.judge(velocity).target);
+    for (auto write = inverter_.movement.next(); write; write = inverter_.movement.next())
+    {
+      inverter_.movement.sent(*write);
+      inverter_.movement.confirmed(*write, at(time_));
+    }
+  }
+
+  static drive::Monitor turning()
+  {
+    drive::Monitor words;
+    words.run_seen = true;
+    words.running = true;
+    words.output_frequency = 20.0;
+    return words;
+  }
+
   const InverterConfig config_ = inverterConfig();
   const drive::Drive mx2_ = shipped("omron_mx2");
   Inverter inverter_{ 0, config_, mx2_, 3, 1 };
@@ -122,6 +142,96 @@ TEST_F(Mx2Inverter, driveThatWasBusyForAMomentIsReadInFullAgainAfterwards)
     inverter_.refresh.failed();
   }
   EXPECT_EQ(request.substr(0, 5), "01 01") << "run and alarm bits stay unread for half a minute";
+}
+
+TEST_F(Mx2Inverter, aCompleteStatusMakesItKnownAndBringsItBack)
+{
+  status(AT_REST);
+  EXPECT_TRUE(inverter_.link.known());
+  inverter_.goOffline(wire::ERROR_TIMEOUT);
+  EXPECT_FALSE(inverter_.link.known());
+  EXPECT_TRUE(inverter_.interlock.isOffline());
+  status(AT_REST);
+  EXPECT_TRUE(inverter_.link.known());
+  EXPECT_FALSE(inverter_.interlock.isOffline());
+  EXPECT_EQ(1U, inverter_.link.returns());
+}
+
+TEST_F(Mx2Inverter, goesOfflineAfterSoManyLostReadsAndForgetsWhatItHasTold)
+{
+  status(AT_REST);
+  run(20.0);
+  inverter_.services.resetBegun();
+  inverter_.services.setupOpened();
+  EXPECT_FALSE(inverter_.failed(at(time_), wire::ERROR_TIMEOUT));
+  EXPECT_FALSE(inverter_.failed(at(time_), wire::ERROR_TIMEOUT));
+  EXPECT_TRUE(inverter_.failed(at(time_), wire::ERROR_TIMEOUT));
+  EXPECT_FALSE(inverter_.failed(at(time_), wire::ERROR_TIMEOUT)) << "it is no news any more";
+  EXPECT_FALSE(inverter_.movement.target()) << "nothing is sent again when it is back";
+  EXPECT_TRUE(inverter_.movement.runPossible()) << "nobody has seen it stop";
+  EXPECT_FALSE(inverter_.services.resetting());
+  EXPECT_FALSE(inverter_.inSetup());
+  EXPECT_FALSE(inverter_.refresh.fresh().run_seen);
+}
+
+TEST_F(Mx2Inverter, expectedSilenceDoesNotTakeItOffline)
+{
+  status(AT_REST);
+  inverter_.liveness.deafUntil(at(time_ + 1000));
+  for (int lost = 0; lost < 5; ++lost)
+  {
+    EXPECT_FALSE(inverter_.failed(at(time_), wire::ERROR_TIMEOUT));
+  }
+  EXPECT_EQ(0, inverter_.link.error());
+}
+
+TEST_F(Mx2Inverter, refusedRunWordsTakeItOfflineTooButWhatItIsNeedNotBeAskedAgain)
+{
+  status(AT_REST);
+  EXPECT_FALSE(inverter_.refusedStatus(0x8102));
+  EXPECT_FALSE(inverter_.refusedStatus(0x8102));
+  EXPECT_TRUE(inverter_.refusedStatus(0x8102));
+  EXPECT_TRUE(inverter_.link.offline());
+  EXPECT_FALSE(inverter_.refusedStatus(0x8102));
+}
+
+TEST_F(Mx2Inverter, comesToRestForMovementAndWatchdog)
+{
+  status(AT_REST);
+  run(20.0);
+  Publisher publisher;
+  publisher.name = "/user";
+  inverter_.interlock.commanded(at(time_), publisher, true);
+  ASSERT_TRUE(inverter_.mayRun());
+  inverter_.cameToRest(at(time_));
+  EXPECT_FALSE(inverter_.mayRun());
+  EXPECT_FALSE(inverter_.interlock.deadManDue(at(time_ + 600000))) << "nothing is left to watch";
+}
+
+TEST_F(Mx2Inverter, repeatsNoWordsWhileAStopOrATripIsPending)
+{
+  status(AT_REST);
+  run(20.0);
+  time_ += 10;
+  inverter_.evidence.statusRead(turning(), reply("", at(time_), at(time_)), inverter_.movement);
+  EXPECT_TRUE(inverter_.mayRepeatWords(at(time_)));
+  inverter_.interlock.faulted(true);
+  EXPECT_FALSE(inverter_.mayRepeatWords(at(time_)));
+  inverter_.interlock.faulted(false);
+  inverter_.stop.request(at(time_), StopMode::Decelerate);
+  EXPECT_FALSE(inverter_.mayRepeatWords(at(time_)));
+}
+
+TEST_F(Mx2Inverter, namesWhatStandsInTheWayOfAVelocity)
+{
+  status(AT_REST);
+  EXPECT_FALSE(inverter_.obstacles().tripped);
+  inverter_.services.setupOpened();
+  EXPECT_TRUE(inverter_.obstacles().in_setup);
+  status(TRIPPED);
+  EXPECT_TRUE(inverter_.obstacles().tripped);
+  inverter_.goOffline(wire::ERROR_TIMEOUT);
+  EXPECT_TRUE(inverter_.obstacles().offline);
 }
 
 /// An MX2 behind a Modbus TCP gateway.

@@ -223,12 +223,16 @@ void Line::consumeIdleHead()
     case Parsed::Kind::Reply:
     case Parsed::Kind::Exception:
     case Parsed::Kind::NotUnderstood:
+    {
       if (gateway_)
       {
         gateway_->takeLate(answerOf(parsed));
       }
-      noteAnswer(outcomeOf(parsed, gatewayCode(parsed, request->own_exceptions)), parsed, take(parsed.consumed));
+      // A protocol calls nothing a reply where nothing was asked.
+      const ExceptionCodes own = request != nullptr ? request->own_exceptions : everyExceptionOfADrive();
+      noteAnswer(outcomeOf(parsed, gatewayCode(parsed, own)), parsed, take(parsed.consumed));
       return;
+    }
   }
 }
 

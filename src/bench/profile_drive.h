@@ -40,8 +40,6 @@ public:
   simulation::Refusal releasePanel(simulation::TimePoint now) override;
   simulation::Refusal pressStopKey(simulation::TimePoint now) override;
   simulation::Refusal setSafeStop(bool active, simulation::TimePoint now) override;
-  simulation::Refusal setLoad(double load, simulation::TimePoint now) override;
-  simulation::Refusal setBusy(simulation::TimePoint until, simulation::TimePoint now) override;
   simulation::Refusal setParameter(const std::string& code, double value, simulation::TimePoint now) override;
   simulation::Refusal parameter(const std::string& code, simulation::KeyValues& values) const override;
   const simulation::Motor& motor() const override;
@@ -62,6 +60,8 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
+  void takeLoad(double load) override;
+  void takeBusy(simulation::TimePoint until) override;
   void describeMotor(simulation::KeyValues& values) const override;
 
 private:

@@ -181,22 +181,14 @@ Refusal ProfileDrive::setSafeStop(bool /*active*/, TimePoint /*now*/)
   return "a profile tells nothing of safe torque off";
 }
 
-Refusal ProfileDrive::setLoad(double load, TimePoint now)
+void ProfileDrive::takeLoad(double load)
 {
-  advance(now);
-  if (!(load >= 0.0 && load <= 3.0))
-  {
-    return "load out of range (0-3; 1 = rated torque)";
-  }
   motor_.setLoad(load);
-  return std::nullopt;
 }
 
-Refusal ProfileDrive::setBusy(TimePoint until, TimePoint now)
+void ProfileDrive::takeBusy(TimePoint until)
 {
-  advance(now);
   goDeaf(until);
-  return std::nullopt;
 }
 
 Refusal ProfileDrive::setParameter(const std::string& code, double value, TimePoint now)

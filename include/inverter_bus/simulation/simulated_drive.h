@@ -86,9 +86,8 @@ public:
   void setLine(const LineSettings& line);
   /// @return false when the drive hears garbage: its serial settings are others than the master's
   bool understandsLine() const;
-  void countLostToGap();
-  void countEarly();
-  void countLostToBusy();
+  /// One more of what only the line can see: lost_gap, early or lost_busy.
+  void count(std::uint64_t ExchangeCounters::*counter);
   void clearCounters();
   const ExchangeCounters& counters() const;
 
@@ -121,9 +120,9 @@ public:
   /// Safe torque off. @param active true: the motor is cut off and the drive trips
   virtual Refusal setSafeStop(bool active, TimePoint now) = 0;
   /// @param load 1.0 = rated torque of the motor; 0 ... 3
-  virtual Refusal setLoad(double load, TimePoint now) = 0;
+  Refusal setLoad(double load, TimePoint now);
   /// The drive is busy writing its EEPROM until then.
-  virtual Refusal setBusy(TimePoint until, TimePoint now) = 0;
+  void setBusy(TimePoint until, TimePoint now);
   /// Sets a parameter as at the panel: in RAM and EEPROM. @param value in the unit that the panel shows
   virtual Refusal setParameter(const std::string& code, double value, TimePoint now) = 0;
   /// @param[out] values what RAM and EEPROM hold, in the unit that the panel shows
@@ -162,6 +161,9 @@ protected:
   virtual void losePower() = 0;
   virtual void gainPower() = 0;
   virtual double startUpTime() const = 0;
+  /// The motor's load is another one. @param load 0 ... 3, 1 = rated torque
+  virtual void takeLoad(double load) = 0;
+  virtual void takeBusy(TimePoint until) = 0;
   virtual void describeMotor(KeyValues& values) const = 0;
   /// @}
 

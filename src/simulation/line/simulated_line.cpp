@@ -442,7 +442,7 @@ void SimulatedLine::finishRequest(Transmission& transmission)
     {
       if (drive->addressedBy(frame))
       {
-        drive->countLostToGap();
+        drive->count(&ExchangeCounters::lost_gap);
       }
     }
   }
@@ -472,11 +472,11 @@ void SimulatedLine::serve(const Transmission& transmission, const Bytes& frame, 
     known = true;
     if (transmission.early)
     {
-      drive->countEarly();
+      drive->count(&ExchangeCounters::early);
     }
     if (owes(drive))
     {
-      drive->countLostToBusy();
+      drive->count(&ExchangeCounters::lost_busy);
       remark = "lost: busy with an earlier one";
       continue;
     }

@@ -51,6 +51,23 @@ Random& SimulatedDrive::random()
   return random_;
 }
 
+Refusal SimulatedDrive::setLoad(double load, TimePoint now)
+{
+  advance(now);
+  if (!(load >= 0.0 && load <= 3.0))
+  {
+    return "load out of range (0-3; 1 = rated torque)";
+  }
+  takeLoad(load);
+  return std::nullopt;
+}
+
+void SimulatedDrive::setBusy(TimePoint until, TimePoint now)
+{
+  advance(now);
+  takeBusy(until);
+}
+
 bool SimulatedDrive::powered() const
 {
   return powered_;
@@ -229,19 +246,9 @@ void SimulatedDrive::spoil(Answer& answer, const Fault& fault)
   }
 }
 
-void SimulatedDrive::countLostToGap()
+void SimulatedDrive::count(std::uint64_t ExchangeCounters::*counter)
 {
-  ++counters_.lost_gap;
-}
-
-void SimulatedDrive::countEarly()
-{
-  ++counters_.early;
-}
-
-void SimulatedDrive::countLostToBusy()
-{
-  ++counters_.lost_busy;
+  ++(counters_.*counter);
 }
 
 void SimulatedDrive::clearCounters()

@@ -80,23 +80,15 @@ Refusal HitachiDrive::setSafeStop(bool active, TimePoint now)
   return std::nullopt;
 }
 
-Refusal HitachiDrive::setLoad(double load, TimePoint now)
+void HitachiDrive::takeLoad(double load)
 {
-  advance(now);
-  if (!(load >= 0.0 && load <= 3.0))
-  {
-    return "load out of range (0-3; 1 = rated torque)";
-  }
   motor_.setLoad(load);
   change();
-  return std::nullopt;
 }
 
-Refusal HitachiDrive::setBusy(TimePoint until, TimePoint now)
+void HitachiDrive::takeBusy(TimePoint until)
 {
-  advance(now);
   busy_until_ = until;
-  return std::nullopt;
 }
 
 Refusal HitachiDrive::setParameter(const std::string& code, double value, TimePoint now)

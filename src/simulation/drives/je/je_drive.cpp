@@ -257,23 +257,15 @@ Refusal JeDrive::setSafeStop(bool /*active*/, TimePoint /*now*/)
   return std::string(MODEL) + " has no safe torque off";
 }
 
-Refusal JeDrive::setLoad(double load, TimePoint now)
+void JeDrive::takeLoad(double load)
 {
-  advance(now);
-  if (!(load >= 0.0 && load <= 3.0))
-  {
-    return "load out of range (0-3; 1 = rated torque)";
-  }
   motor_.setLoad(load);
   change();
-  return std::nullopt;
 }
 
-Refusal JeDrive::setBusy(TimePoint until, TimePoint now)
+void JeDrive::takeBusy(TimePoint until)
 {
-  advance(now);
   busy_until_ = until;
-  return std::nullopt;
 }
 
 Refusal JeDrive::setParameter(const std::string& code, double value, TimePoint now)

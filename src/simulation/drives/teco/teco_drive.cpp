@@ -379,23 +379,15 @@ Refusal TecoDrive::setSafeStop(bool /*active*/, TimePoint /*now*/)
   return std::string(MODEL) + " has no safe torque off";
 }
 
-Refusal TecoDrive::setLoad(double load, TimePoint now)
+void TecoDrive::takeLoad(double load)
 {
-  advance(now);
-  if (!(load >= 0.0 && load <= 3.0))
-  {
-    return "load out of range (0-3; 1 = rated torque)";
-  }
   motor_.setLoad(load);
   change();
-  return std::nullopt;
 }
 
-Refusal TecoDrive::setBusy(TimePoint until, TimePoint now)
+void TecoDrive::takeBusy(TimePoint until)
 {
-  advance(now);
   busy_until_ = until;
-  return std::nullopt;
 }
 
 Refusal TecoDrive::setParameter(const std::string& code, double value, TimePoint now)

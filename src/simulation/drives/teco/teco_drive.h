@@ -55,8 +55,6 @@ public:
   Refusal releasePanel(TimePoint now) override;
   Refusal pressStopKey(TimePoint now) override;
   Refusal setSafeStop(bool active, TimePoint now) override;
-  Refusal setLoad(double load, TimePoint now) override;
-  Refusal setBusy(TimePoint until, TimePoint now) override;
   Refusal setParameter(const std::string& code, double value, TimePoint now) override;
   Refusal parameter(const std::string& code, KeyValues& values) const override;
   const Motor& motor() const override;
@@ -69,6 +67,8 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
+  void takeLoad(double load) override;
+  void takeBusy(TimePoint until) override;
   void describeMotor(KeyValues& values) const override;
 
   bool takesBroadcast(const Bytes& frame) const override;

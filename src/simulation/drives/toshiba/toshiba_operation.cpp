@@ -90,23 +90,15 @@ Refusal ToshibaVfs15::setSafeStop(bool active, TimePoint now)
   return std::nullopt;
 }
 
-Refusal ToshibaVfs15::setLoad(double load, TimePoint now)
+void ToshibaVfs15::takeLoad(double load)
 {
-  advance(now);
-  if (!(load >= 0.0 && load <= 3.0))
-  {
-    return "load out of range (0-3; 1 = rated torque)";
-  }
   motor_.setLoad(load);
   change();
-  return std::nullopt;
 }
 
-Refusal ToshibaVfs15::setBusy(TimePoint until, TimePoint now)
+void ToshibaVfs15::takeBusy(TimePoint until)
 {
-  advance(now);
   busy_until_ = until;
-  return std::nullopt;
 }
 
 Refusal ToshibaVfs15::setParameter(const std::string& code, double value, TimePoint now)

@@ -51,9 +51,6 @@ public:
   Refusal pressStopKey(TimePoint now) override;
   /// The terminal ST: off (active) coasts, without a trip.
   Refusal setSafeStop(bool active, TimePoint now) override;
-  Refusal setLoad(double load, TimePoint now) override;
-  /// Until then writes are answered with exception 04.
-  Refusal setBusy(TimePoint until, TimePoint now) override;
   /// @param code also a monitor register such as "FC91": it shows this raw value until the drive is switched off
   Refusal setParameter(const std::string& code, double value, TimePoint now) override;
   Refusal parameter(const std::string& code, KeyValues& values) const override;
@@ -69,6 +66,9 @@ protected:
   void losePower() override;
   void gainPower() override;
   double startUpTime() const override;
+  void takeLoad(double load) override;
+  /// Until then writes are answered with exception 04.
+  void takeBusy(TimePoint until) override;
   void describeMotor(KeyValues& values) const override;
 
   std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) override;

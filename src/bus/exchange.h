@@ -47,6 +47,16 @@ struct InFlight
   CommandId job = 0;
 };
 
+/// The exchange of a pick; what is to be sent is still missing.
+inline InFlight exchangeFor(const Pick& pick, Purpose purpose)
+{
+  InFlight current;
+  current.pick = pick;
+  current.purpose = purpose;
+  current.inverter = pick.inverter;
+  return current;
+}
+
 /// What the end of an exchange says of its inverter beyond the activity's own business; Absences draws the conclusion.
 enum class Ending
 {

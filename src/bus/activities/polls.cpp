@@ -23,10 +23,7 @@ Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops,
 InFlight Polls::compose(TimePoint now, const Pick& pick)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  InFlight current;
-  current.pick = pick;
-  current.inverter = pick.inverter;
-  current.purpose = Purpose::Refresh;
+  InFlight current = exchangeFor(pick, Purpose::Refresh);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);

@@ -53,12 +53,9 @@ std::optional<InFlight> Services::compose(TimePoint now, const Pick& pick)
     end(pick.command, moving);
     return std::nullopt;
   }
-  InFlight current;
-  current.pick = pick;
-  current.purpose = Purpose::Job;
-  current.inverter = running.inverter;
+  InFlight current = exchangeFor(pick, Purpose::Job);
   current.job = pick.command;
-  current.request = bus_.inverters[running.inverter]->prepared(running.job->next());
+  current.request = inverter.prepared(running.job->next());
   return current;
 }
 

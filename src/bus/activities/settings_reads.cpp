@@ -17,10 +17,7 @@ SettingsReads::SettingsReads(BusState& bus, Turns& turns, Services& services, Ab
 InFlight SettingsReads::compose(const Pick& pick) const
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  InFlight current;
-  current.pick = pick;
-  current.inverter = pick.inverter;
-  current.purpose = Purpose::Setting;
+  InFlight current = exchangeFor(pick, Purpose::Setting);
   current.request = inverter.prepared(inverter.settings.next());
   return current;
 }

@@ -103,10 +103,7 @@ InFlight Shutdown::composeRelease(const Pick& pick)
   Inverter& inverter = *bus_.inverters[pick.inverter];
   const drive::Step& step = inverter.drive.sequence("release")->steps.front();
   released_[pick.inverter] = true;
-  InFlight current;
-  current.pick = pick;
-  current.inverter = pick.inverter;
-  current.purpose = Purpose::Release;
+  InFlight current = exchangeFor(pick, Purpose::Release);
   current.request = inverter.prepared(inverter.drive.command(inverter.config.node, step));
   return current;
 }

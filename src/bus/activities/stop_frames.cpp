@@ -10,14 +10,28 @@ namespace inverter_bus
 {
 namespace bus
 {
+namespace
+{
+/// The stop of this drive to all stations; nothing: its profile has none.
+std::optional<wire::Request> broadcastStop(const drive::Drive& drive)
+{
+  const drive::Sequence* stop = drive.sequence("stop");
+  if (stop == nullptr)
+  {
+    return std::nullopt;
+  }
+  const drive::Step& step = stop->steps.front();
+  return drive.broadcast(step.point, step.value.value_or(0));
+}
+}  // namespace
+
 /// Address 0 is executed by every drive, and the same register means something else on each brand.
 bool Stops::broadcastIsSafe() const
 {
   const drive::Drive& first = bus_.inverters.front()->drive;
   const auto stop_frame = [](const drive::Drive& drive) {
-    const drive::Sequence* stop = drive.sequence("stop");
-    return stop == nullptr ? wire::Bytes()
-                           : drive.broadcast(stop->steps.front().point, stop->steps.front().value.value_or(0)).pdu;
+    const auto request = broadcastStop(drive);
+    return request ? request->pdu : wire::Bytes();
   };
   // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
   return bus_.connected && bus_.inverters.size() > 1 && !stop_frame(first).empty() &&
@@ -48,11 +62,10 @@ std::optional<InFlight> Stops::composeBroadcast(TimePoint now)
   bus_.broadcast_waits = kept;
   broadcast_due_ = false;
   broadcast_last_ = true;
-  const Inverter& any = *bus_.inverters.front();
-  const drive::Step& step = any.drive.sequence("stop")->steps.front();
   InFlight current;
   current.purpose = Purpose::Broadcast;
-  current.request = any.drive.broadcast(step.point, step.value.value_or(0));
+  // broadcastIsSafe() has seen that there is one.
+  current.request = *broadcastStop(bus_.inverters.front()->drive);
   return current;
 }
 
@@ -65,10 +78,7 @@ InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
     // Rule 4.4: its one frame is the stop itself.
     inverter.stop.writeAgain();
   }
-  InFlight current;
-  current.pick = pick;
-  current.inverter = pick.inverter;
-  current.purpose = Purpose::StopFrame;
+  InFlight current = exchangeFor(pick, Purpose::StopFrame);
   current.request = inverter.prepared(inverter.stop.next());
   if (pick.probe)
   {

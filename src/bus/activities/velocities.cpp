@@ -59,7 +59,7 @@ std::string inConflict(const Inverter& inverter, std::uint16_t& error_id)
 /// 0: a velocity of this publisher may move it.
 std::uint16_t lockOf(TimePoint now, const Inverter& inverter, const Publisher& publisher)
 {
-  if (inverter.link.offline() && inverter.settings.identity() != Identity::Wrong)
+  if (inverter.link.offline())
   {
     return ERROR_OFFLINE;
   }

@@ -53,11 +53,9 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
         bus_.scheduler.splitOff(pick.command, member, bus_.next_command++, now + seconds(STATUS_WAIT_S), false);
         continue;
       }
-      InFlight current;
-      current.pick = pick;
-      current.pick.inverter = member;
-      current.purpose = Purpose::Velocity;
-      current.inverter = member;
+      Pick of_member = pick;
+      of_member.inverter = member;
+      InFlight current = exchangeFor(of_member, Purpose::Velocity);
       current.write = *write;
       current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
       current.request = inverter.prepared(write->request);

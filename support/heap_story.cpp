@@ -267,7 +267,7 @@ void Story::tickStreams()
 {
   for (std::size_t index = 0; index < streams_.size(); ++index)
   {
-    // An unsteady publisher: what it leaves out is for the dead man.
+    // An unsteady publisher: what it leaves out is for the command watchdog.
     if (!streams_[index].publisher.empty() && chance() < 0.9)
     {
       send(index, streams_[index], false);

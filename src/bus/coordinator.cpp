@@ -31,7 +31,7 @@ Coordinator::~Coordinator() = default;
 bool Coordinator::tick(TimePoint now)
 {
   noteRunning(now);
-  activities_.stops.watchDeadMen(now);
+  activities_.stops.checkWatchdogs(now);
   const bool lost_one = activities_.absences.watchStatuses(now);
   for (const std::string& line : bus_.refusals.takeLines(now))
   {
@@ -43,7 +43,7 @@ bool Coordinator::tick(TimePoint now)
   return lost_one;
 }
 
-/// Looks for a jump of time. Only who watches for answers of drives forgives it; dead men and locks go by the real time.
+/// Looks for a jump of time. Only who watches for answers of drives forgives it; command watchdogs and locks go by the real time.
 void Coordinator::noteRunning(TimePoint now)
 {
   const Duration frozen = freeze_.back(now);
@@ -98,7 +98,7 @@ std::optional<InFlight> Coordinator::chosen(TimePoint now, TimePoint& wake)
       const Pick chosen = pick(now);
       if (chosen.what == Pick::What::Nothing)
       {
-        wake = std::max(activities_.stops.earliestDeadMan(chosen.wake), now);
+        wake = std::max(activities_.stops.earliestWatchdog(chosen.wake), now);
         return std::nullopt;
       }
       current = compose(now, chosen);

@@ -49,7 +49,7 @@ public:
   };
   /// The next exchange to make right now; nothing: ask again at \p wake or when something was requested.
   std::optional<Exchange> next(TimePoint now, TimePoint& wake);
-  /// What time alone brings: dead men, bounds, slow publications. Also while the port is closed. True: an inverter has just
+  /// What time alone brings: command watchdogs, bounds, slow publications. Also while the port is closed. True: an inverter has just
   /// gone offline, because its status has not come for too long.
   bool tick(TimePoint now);
   /// The first byte of that exchange is leaving now.

@@ -80,7 +80,7 @@ std::optional<bus::Finding> MasterWatch::findingOf(State state)
     case State::NoMaster:
       return bus::Finding{ bus::Level::Warn, "the ROS master at " + ros::master::getURI() +
                                                  " does not answer: nobody new can connect; who is connected still "
-                                                 "commands, and dead man and stops work as ever" };
+                                                 "commands, and command watchdog and stops work as ever" };
     case State::Unknown:
       return bus::Finding{ bus::Level::Warn,
                            "the ROS master was restarted and does not know this node: restart the node; until then "

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Velocity commands, end to end: scaling, sign, refusals, groups, the dead man."""
+"""Velocity commands, end to end: scaling, sign, refusals, groups, the command watchdog."""
 import unittest
 
 import rostest
@@ -117,15 +117,15 @@ class Commands(unittest.TestCase):
         frames = self.bench.simulate('bus frames 30').split('|')
         return len([frame for frame in frames if ' 01 10 ' in frame or ' 01 05 ' in frame])
 
-    def testTheDeadManStopsTheInverter(self):
+    def testTheWatchdogStopsTheInverter(self):
         belt = self.bench['belt_3']
         belt.send(20.0)
         belt.wait(lambda s: s.run_command, 'RUN given')
-        status = belt.wait(lambda s: not s.running and not s.run_command, 'stopped by the dead man')
+        status = belt.wait(lambda s: not s.running and not s.run_command, 'stopped by the command watchdog')
         self.assertFalse(self.bench.turns('belt_3'))
         self.assertFalse(status.stop_active)
 
-    def testARefusedCommandDoesNotFeedTheDeadMan(self):
+    def testARefusedCommandDoesNotFeedTheWatchdog(self):
         belt = self.bench['belt_3']
         belt.send(20.0)
         belt.wait(lambda s: s.run_command, 'RUN given')
@@ -134,7 +134,7 @@ class Commands(unittest.TestCase):
             belt.send(float('nan'))
             return not belt.status.run_command and not belt.status.running
 
-        wait_for(stopped, 'stopped by the dead man in spite of a stream of NaN')
+        wait_for(stopped, 'stopped by the command watchdog in spite of a stream of NaN')
 
     def testAGroupIsCarriedOutTogether(self):
         self.bench.send_group(belt_1=10.0, belt_2=0.5, belt_3=-10.0)

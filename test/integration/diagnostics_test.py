@@ -124,7 +124,7 @@ class Diagnostics(unittest.TestCase):
                 self.bench.finding('belt_1', 'turns in the wrong direction')
             finally:
                 self.bench.simulate('belt_1 panel_release')
-        self.bench['belt_1'].wait(lambda s: not s.run_command and not s.running, 'stopped by the dead man')
+        self.bench['belt_1'].wait(lambda s: not s.run_command and not s.running, 'stopped by the command watchdog')
         self.wait_level('belt_1', DiagnosticStatus.OK)
 
     def testAMotorThatDoesNotMoveAlthoughRunIsOnWarns(self):
@@ -133,7 +133,7 @@ class Diagnostics(unittest.TestCase):
         with Stream(self.bench['belt_3'], 10.0):
             self.bench.finding('belt_3', 'does not move although RUN is on')
             self.assertFalse(self.bench.turns('belt_3'))
-        self.bench['belt_3'].wait(lambda s: not s.run_command, 'stopped by the dead man')
+        self.bench['belt_3'].wait(lambda s: not s.run_command, 'stopped by the command watchdog')
 
     def testASecondMasterWarns(self):
         def warns():

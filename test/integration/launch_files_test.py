@@ -38,7 +38,7 @@ class LaunchFiles(unittest.TestCase):
         for stream in streams:
             stream.end()
         for belt in belts:
-            belt.wait(lambda s: not s.running, 'stopped by the dead man')
+            belt.wait(lambda s: not s.running, 'stopped by the command watchdog')
 
     def testParametersOfTheFileReachTheDriver(self):
         self.assertEqual(rospy.get_param('/conveyor/baud_rate'), 19200)

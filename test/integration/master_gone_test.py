@@ -93,9 +93,9 @@ class MasterGone(unittest.TestCase):
         self.assertGoesOn()
         self.bench.finding('bus', 'the ROS master', 'does not answer')
         stays(lambda: self.bench.turns('belt_1') and self.bench.turns('belt_2'), 'run on under their streams', 1.0)
-        # The dead man needs no master.
+        # The command watchdog needs no master.
         self.streams[1].end()
-        self.bench['belt_2'].wait(lambda s: s.locked and not s.run_command and not s.running, 'stopped by the dead man')
+        self.bench['belt_2'].wait(lambda s: s.locked and not s.run_command and not s.running, 'stopped by the command watchdog')
         self.assertFalse(self.bench.turns('belt_2'))
         self.assertTrue(self.bench.turns('belt_1'))
         MASTER.start()

@@ -53,14 +53,14 @@ class TwoPublishers(unittest.TestCase):
         self.bench.finding('belt_1', '2 publishers on')
         self.assertEqual(self.bench.diagnostics['belt_1'].level, 1)
         self.assertEqual(self.belt.seen(lambda s: s.locked or s.error_id != 0 and s.error_id < 0x8000), [])
-        # The one that is left keeps its motor; when it ends too, the dead man stops it.
+        # The one that is left keeps its motor; when it ends too, the command watchdog stops it.
         self.stream.end()
         # Our last message may still be under way.
         wait_for(lambda: self.obeysTheOtherFor(1.0), 'the other one alone keeps its velocity')
         wait_for(lambda: 'several publishers' not in self.bench.diagnostics['belt_1'].message, 'no warning any more')
         self.other.signal(signal.SIGKILL)
         self.other.wait()
-        self.belt.wait(lambda s: s.locked and not s.running, 'stopped by the dead man')
+        self.belt.wait(lambda s: s.locked and not s.running, 'stopped by the command watchdog')
         self.assertEqual(self.bench.real('belt_1')['run_coil'], '0')
 
     def testAfterAStopEachIsLockedForItself(self):

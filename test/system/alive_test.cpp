@@ -64,7 +64,7 @@ protected:
     }
   }
 
-  /// Command time-outs beyond the stream's period, so that no dead man helps.
+  /// Command time-outs beyond the stream's period, so that no command watchdog helps.
   static std::string belts()
   {
     return std::string(TWO_BELTS) + "defaults: {command_timeout: 3.0}\n";

@@ -96,7 +96,7 @@ TEST(Coincidences, whoStopsAllAgainAndAgainBlindsTheDriverNotAndGetsHisAnswers)
   }
 }
 // Seed 7000622.
-TEST(Coincidences, theDeadManLocksAlthoughTheStopOfALostRunIsUnderWay)
+TEST(Coincidences, theWatchdogLocksAlthoughTheStopOfALostRunIsUnderWay)
 {
   VirtualBus bus(R"(
 port: /dev/virtual

@@ -246,7 +246,7 @@ TEST(Safety, aCommandOfZeroTakesRunOffWithoutALock)
   EXPECT_EQ(bus.motor("belt", "run_coil"), 1);
 }
 
-TEST(Safety, anEqualCommandFeedsTheDeadManAndSendsNothing)
+TEST(Safety, anEqualCommandFeedsTheWatchdogAndSendsNothing)
 {
   VirtualBus bus(ONE_BELT);
   bus.settleIn();

@@ -149,7 +149,7 @@ TEST_F(Velocities, saturateClampsShowsItAndSendsNothingForTheSameAgain)
   }));
   EXPECT_EQ(bus_->status(0).commanded_velocity, -0.5);
   bus_->clearFrames();
-  // Each of these is the same command, and feeds the dead man.
+  // Each of these is the same command, and feeds the command watchdog.
   for (int i = 0; i < 10; ++i)
   {
     bus_->at(0.1 * i, [this, i] { EXPECT_EQ(bus_->command(0, -7.0 - i), 0); });
@@ -198,7 +198,7 @@ TEST_F(Velocities, aFactorThatBringsAMemberNearZeroRefusesTheGroup)
   EXPECT_EQ(bus_->status(0).commanded_velocity, 0.5);
 }
 
-TEST_F(Velocities, aRefusedStreamIsToldOnceAndTheDeadManSaysWhy)
+TEST_F(Velocities, aRefusedStreamIsToldOnceAndTheWatchdogSaysWhy)
 {
   start(wheels(", command_timeout: 0.25"));
   runBoth(0.3);

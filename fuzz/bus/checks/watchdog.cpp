@@ -40,7 +40,7 @@ void Watchdog::checkOverdue(TimePoint now, std::size_t index) const
                        observed_.online(index);
   if (watched && now - *fed > timeout(index) + observed_.longestWait(now))
   {
-    fail(now, "the dead man stops the inverter",
+    fail(now, "the command watchdog stops the inverter",
          observed_.scene.title(index) + " has no command since " + decimal(toSeconds(now - *fed)) + " s and no stop");
   }
 }

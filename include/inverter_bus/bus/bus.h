@@ -51,7 +51,7 @@ public:
 
   /// A velocity command that could not even be turned into targets (unequal lengths, unknown or repeated names): shows
   /// \p error_id and \p text in the status of \p indices (may be empty) and, with \p group, in that of the bus. It feeds
-  /// no dead man, unlocks nothing and changes nothing that runs.
+  /// no command watchdog, unlocks nothing and changes nothing that runs.
   void refuse(const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text, bool group);
 
   /// \p index: an inverter, or nothing for all of them. \p callback gets the answer when every stop is confirmed, or

@@ -140,24 +140,24 @@ void Stops::confirmed(TimePoint now, Inverter& inverter)
   finishCalls(now);
 }
 
-void Stops::watchDeadMen(TimePoint now)
+void Stops::checkWatchdogs(TimePoint now)
 {
   for (const auto& inverter : bus_.inverters)
   {
     // A stop that locks nothing (a 0, a RUN that got lost) may be pending: silence locks all the same.
-    if (inverter->interlock.deadManDue(now) && !inverter->interlock.stopPending())
+    if (inverter->interlock.watchdogDue(now) && !inverter->interlock.stopPending())
     {
       request(now, *inverter, StopMode::Decelerate, true,
-              bus_.refusals.deadManReason(inverter->index, inverter->config.command_timeout));
+              bus_.refusals.watchdogReason(inverter->index, inverter->config.command_timeout));
     }
   }
 }
 
-TimePoint Stops::earliestDeadMan(TimePoint wake) const
+TimePoint Stops::earliestWatchdog(TimePoint wake) const
 {
   for (const auto& inverter : bus_.inverters)
   {
-    if (const auto at = inverter->interlock.deadManAt())
+    if (const auto at = inverter->interlock.watchdogAt())
     {
       wake = std::min(wake, *at);
     }

@@ -28,9 +28,9 @@ public:
   /// The service, of one inverter or of all. \p mode as in Stop.srv; one that nobody knows, or that the drive does not have,
   /// is carried out as DECELERATE, and the answer says so.
   void stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback);
-  void watchDeadMen(TimePoint now);
+  void checkWatchdogs(TimePoint now);
   /// \p wake, or when the next inverter's commands have been silent for too long.
-  TimePoint earliestDeadMan(TimePoint wake) const;
+  TimePoint earliestWatchdog(TimePoint wake) const;
   /// Velocities of 0 that can't be confirmed now take the way of a stop, which knows how to insist.
   void replaceZeros(TimePoint now);
 

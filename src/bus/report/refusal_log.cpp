@@ -67,7 +67,7 @@ void RefusalLog::accepted(std::size_t inverter)
   since_accepted_[inverter] = Refused();
 }
 
-std::string RefusalLog::deadManReason(std::size_t inverter, double command_timeout) const
+std::string RefusalLog::watchdogReason(std::size_t inverter, double command_timeout) const
 {
   const Refused& refused = since_accepted_[inverter];
   const std::string timeout = util::numberText(command_timeout, 9) + " s (command_timeout)";

@@ -35,9 +35,9 @@ public:
   void notCommanded(std::size_t inverter, const std::string& reason);
   /// A command of this inverter was accepted.
   void accepted(std::size_t inverter);
-  /// Why the dead man of \p inverter stops it after \p command_timeout [s]: nobody has sent anything, or nothing that could
+  /// Why the command watchdog of \p inverter stops it after \p command_timeout [s]: nobody has sent anything, or nothing that could
   /// be accepted.
-  std::string deadManReason(std::size_t inverter, double command_timeout) const;
+  std::string watchdogReason(std::size_t inverter, double command_timeout) const;
 
 private:
   struct Kind

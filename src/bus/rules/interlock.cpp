@@ -187,7 +187,7 @@ void Interlock::zeroed(TimePoint now, const Publisher& publisher)
   Stream& stream = book(now, publisher);
   stream.neutral = true;
   stream.nonzero = false;
-  // What was moving is on its way to rest, and the stop of a 0 insists by itself: nothing is left for the dead man.
+  // What was moving is on its way to rest, and the stop of a 0 insists by itself: nothing is left for the command watchdog.
   last_accepted_.reset();
 }
 
@@ -204,7 +204,7 @@ void Interlock::resting()
   last_accepted_.reset();
 }
 
-std::optional<TimePoint> Interlock::deadManAt() const
+std::optional<TimePoint> Interlock::watchdogAt() const
 {
   if (!last_accepted_ || command_timeout_ <= Duration::zero())
   {
@@ -213,9 +213,9 @@ std::optional<TimePoint> Interlock::deadManAt() const
   return *last_accepted_ + command_timeout_;
 }
 
-bool Interlock::deadManDue(TimePoint now) const
+bool Interlock::watchdogDue(TimePoint now) const
 {
-  const auto due = deadManAt();
+  const auto due = watchdogAt();
   return due && now >= *due;
 }
 

@@ -27,12 +27,12 @@ enum class Permission
   Locked
 };
 
-/// Return to neutral and dead man of one inverter (contract, sections 4.2 and 4.3), as one pure state machine: time comes
+/// Return to neutral and command watchdog of one inverter (contract, sections 4.2 and 4.3), as one pure state machine: time comes
 /// in, permissions come out.
 ///
 ///     start-up ----+
 ///     stop --------+--> LOCKED --(stop confirmed, no fault, online, and the publisher has sent 0 or was silent)--> free
-///     dead man ----+       ^                                                                                       |
+///     watchdog ----+       ^                                                                                       |
 ///     fault -------+       +---------------------------------------------------------------------------------------+
 ///     offline -----+
 ///
@@ -41,7 +41,7 @@ enum class Permission
 class Interlock
 {
 public:
-  /// \p command_timeout [s] without an accepted command before deadManDue(); 0: never.
+  /// \p command_timeout [s] without an accepted command before watchdogDue(); 0: never.
   explicit Interlock(double command_timeout);
 
   // --- what happened ----------------------------------------------------------------------------------------------
@@ -56,22 +56,22 @@ public:
   // --- velocities -------------------------------------------------------------------------------------------------
   /// Judges a velocity other than 0 and changes nothing.
   Permission judge(TimePoint now, const Publisher& publisher) const;
-  /// Books a velocity other than 0. \p accepted: it was granted and is in range; feeds the dead man. A refused one ends
+  /// Books a velocity other than 0. \p accepted: it was granted and is in range; feeds the command watchdog. A refused one ends
   /// the publisher's neutral: a stream of refused commands must not come through when the lock's reason goes away.
   void commanded(TimePoint now, const Publisher& publisher, bool accepted);
   /// Books a velocity of 0: neutral for this publisher.
   void zeroed(TimePoint now, const Publisher& publisher);
   /// Books a velocity near 0: for the lock as if nothing had come, so that it neither ends a silence nor is a return to
-  /// neutral; for the dead man as a 0.
+  /// neutral; for the command watchdog as a 0.
   void nearlyZeroed(TimePoint now, const Publisher& publisher);
-  /// No RUN of ours is in force any more: nothing for the dead man to watch.
+  /// No RUN of ours is in force any more: nothing for the command watchdog to watch.
   void resting();
 
   // --- answers ----------------------------------------------------------------------------------------------------
   /// A command is in force and none has come for `command_timeout`.
-  bool deadManDue(TimePoint now) const;
-  /// When deadManDue() becomes true if nothing comes; nothing: never.
-  std::optional<TimePoint> deadManAt() const;
+  bool watchdogDue(TimePoint now) const;
+  /// When watchdogDue() becomes true if nothing comes; nothing: never.
+  std::optional<TimePoint> watchdogAt() const;
   /// What status shows: true while nobody has returned to neutral and a stream goes on being refused, or the lock's reason
   /// is not over. False, a publisher whose stream has never paused is still refused: the lock counts per publisher.
   bool locked(TimePoint now) const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-// Return to neutral and dead man: sections 4.2 and 4.3 of the contract, in virtual time.
+// Return to neutral and command watchdog: sections 4.2 and 4.3 of the contract, in virtual time.
 
 #include "bus/rules/interlock.h"
 
@@ -494,72 +494,72 @@ TEST(Interlock, returnDoesNotEndAPendingStop)
   EXPECT_EQ(belt.interlock.judge(at(61100), publisher()), Permission::Locked);
 }
 
-// --- dead man --------------------------------------------------------------------------------------------------------
+// --- command watchdog --------------------------------------------------------------------------------------------------------
 
-TEST(Interlock, deadManIsDueAfterTheCommandTimeoutWithoutACommand)
+TEST(Interlock, watchdogIsDueAfterTheCommandTimeoutWithoutACommand)
 {
   Running belt(0.5);
-  EXPECT_FALSE(belt.interlock.deadManDue(at(1499)));
-  EXPECT_TRUE(belt.interlock.deadManDue(at(1500)));
-  ASSERT_TRUE(belt.interlock.deadManAt());
-  EXPECT_EQ(*belt.interlock.deadManAt(), at(1500));
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(1499)));
+  EXPECT_TRUE(belt.interlock.watchdogDue(at(1500)));
+  ASSERT_TRUE(belt.interlock.watchdogAt());
+  EXPECT_EQ(*belt.interlock.watchdogAt(), at(1500));
 }
 
-TEST(Interlock, acceptedCommandsOfAnyPublisherFeedTheDeadMan)
+TEST(Interlock, acceptedCommandsOfAnyPublisherFeedTheWatchdog)
 {
   Running belt(0.5);
   belt.zero(1050, publisher("/joystick"));
   EXPECT_EQ(belt.command(1400, publisher("/joystick")), Permission::Granted);
-  EXPECT_FALSE(belt.interlock.deadManDue(at(1899)));
-  EXPECT_TRUE(belt.interlock.deadManDue(at(1900)));
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(1899)));
+  EXPECT_TRUE(belt.interlock.watchdogDue(at(1900)));
 }
 
-TEST(Interlock, refusedCommandsDoNotFeedTheDeadMan)
+TEST(Interlock, refusedCommandsDoNotFeedTheWatchdog)
 {
   Running belt(0.5);
   for (int time = 1100; time < 1500; time += 50)
   {
     belt.interlock.commanded(at(time), publisher(), false);
   }
-  EXPECT_TRUE(belt.interlock.deadManDue(at(1500)));
+  EXPECT_TRUE(belt.interlock.watchdogDue(at(1500)));
 }
 
-TEST(Interlock, repeatsDoNotFeedTheDeadMan)
+TEST(Interlock, repeatsDoNotFeedTheWatchdog)
 {
   Running belt(0.5);
   EXPECT_EQ(belt.command(1400, latched("/planner")), Permission::Repeat);
-  EXPECT_TRUE(belt.interlock.deadManDue(at(1500)));
+  EXPECT_TRUE(belt.interlock.watchdogDue(at(1500)));
 }
 
-TEST(Interlock, deadManWatchesNothingBeforeTheFirstCommand)
+TEST(Interlock, watchdogWatchesNothingBeforeTheFirstCommand)
 {
   Guarded belt(0.5);
   belt.interlock.online(at(0));
   belt.zero(100);
-  EXPECT_FALSE(belt.interlock.deadManAt());
-  EXPECT_FALSE(belt.interlock.deadManDue(at(1000000)));
+  EXPECT_FALSE(belt.interlock.watchdogAt());
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(1000000)));
 }
 
-TEST(Interlock, deadManWatchesNothingAtRest)
+TEST(Interlock, watchdogWatchesNothingAtRest)
 {
   Running belt(0.5);
   belt.interlock.resting();
-  EXPECT_FALSE(belt.interlock.deadManDue(at(1000000)));
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(1000000)));
 }
 
-TEST(Interlock, deadManIsFedByTheNextCommandAfterARest)
+TEST(Interlock, watchdogIsFedByTheNextCommandAfterARest)
 {
   Running belt(0.5);
   belt.interlock.resting();
   EXPECT_EQ(belt.command(5000), Permission::Granted);
-  EXPECT_TRUE(belt.interlock.deadManDue(at(5500)));
+  EXPECT_TRUE(belt.interlock.watchdogDue(at(5500)));
 }
 
 TEST(Interlock, commandTimeoutZeroMeansNever)
 {
   Running belt(0.0);
-  EXPECT_FALSE(belt.interlock.deadManAt());
-  EXPECT_FALSE(belt.interlock.deadManDue(at(100000000)));
+  EXPECT_FALSE(belt.interlock.watchdogAt());
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(100000000)));
 }
 
 TEST(Interlock, commandTimeoutZeroLocksAllTheSame)
@@ -572,12 +572,12 @@ TEST(Interlock, commandTimeoutZeroLocksAllTheSame)
   EXPECT_EQ(belt.interlock.judge(at(10450), publisher()), Permission::Granted);
 }
 
-TEST(Interlock, deadManLocksLikeAnyStop)
+TEST(Interlock, watchdogLocksLikeAnyStop)
 {
   Running belt(0.5);
-  ASSERT_TRUE(belt.interlock.deadManDue(at(1500)));
+  ASSERT_TRUE(belt.interlock.watchdogDue(at(1500)));
   belt.stopAndConfirm(1600);
-  EXPECT_FALSE(belt.interlock.deadManDue(at(3000)));
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(3000)));
   EXPECT_EQ(belt.command(1700), Permission::Locked);
 }
 
@@ -706,11 +706,11 @@ TEST(Interlock, nearZeroLocksNobodyOut)
   EXPECT_EQ(belt.command(1200), Permission::Granted);
 }
 
-TEST(Interlock, nearZeroLeavesNothingToTheDeadMan)
+TEST(Interlock, nearZeroLeavesNothingToTheWatchdog)
 {
   Running belt;
   belt.nearZero(1100);
-  EXPECT_FALSE(belt.interlock.deadManDue(at(60000)));
+  EXPECT_FALSE(belt.interlock.watchdogDue(at(60000)));
   EXPECT_EQ(belt.interlock.activePublishers(at(1200)), 0U);
 }
 

@@ -205,7 +205,7 @@ TEST_F(Mx2Inverter, comesToRestForMovementAndWatchdog)
   ASSERT_TRUE(inverter_.mayRun());
   inverter_.cameToRest(at(time_));
   EXPECT_FALSE(inverter_.mayRun());
-  EXPECT_FALSE(inverter_.interlock.deadManDue(at(time_ + 600000))) << "nothing is left to watch";
+  EXPECT_FALSE(inverter_.interlock.watchdogDue(at(time_ + 600000))) << "nothing is left to watch";
 }
 
 TEST_F(Mx2Inverter, repeatsNoWordsWhileAStopOrATripIsPending)

@@ -61,19 +61,19 @@ TEST(RefusalLog, invertersAndReasonsAreToldApart)
   EXPECT_THAT(log.takeLines(at(0)), ElementsAre("a locked", "b locked", "a too fast", "who is c"));
 }
 
-TEST(RefusalLog, theDeadMansReasonCountsWhatWasRefusedSinceTheLastAcceptedCommand)
+TEST(RefusalLog, theWatchdogsReasonCountsWhatWasRefusedSinceTheLastAcceptedCommand)
 {
   RefusalLog log(2);
-  EXPECT_EQ(log.deadManReason(0, 0.5), "no command for 0.5 s (command_timeout)");
+  EXPECT_EQ(log.watchdogReason(0, 0.5), "no command for 0.5 s (command_timeout)");
   log.notCommanded(0, "old");
   log.accepted(0);
-  EXPECT_EQ(log.deadManReason(0, 0.25), "no command for 0.25 s (command_timeout)");
+  EXPECT_EQ(log.watchdogReason(0, 0.25), "no command for 0.25 s (command_timeout)");
   log.notCommanded(0, "too fast");
-  EXPECT_EQ(log.deadManReason(0, 0.5), "1 command came in 0.5 s (command_timeout) and was refused: too fast");
+  EXPECT_EQ(log.watchdogReason(0, 0.5), "1 command came in 0.5 s (command_timeout) and was refused: too fast");
   log.notCommanded(0, "much too fast");
-  EXPECT_EQ(log.deadManReason(0, 0.5),
+  EXPECT_EQ(log.watchdogReason(0, 0.5),
             "2 commands came in 0.5 s (command_timeout) and all were refused, the last: much too fast");
-  EXPECT_EQ(log.deadManReason(1, 0.5), "no command for 0.5 s (command_timeout)");
+  EXPECT_EQ(log.watchdogReason(1, 0.5), "no command for 0.5 s (command_timeout)");
 }
 
 TEST(RefusedVelocity, namesTheValueOnce)

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <limits>
 #include <locale>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 
 namespace inverter_bus
 {
@@ -127,6 +130,26 @@ WholeNumeral readWholeNumeral(const std::string& text)
   numeral.integer = negative ? -magnitude : magnitude;
   numeral.number = negative ? -digits.number : digits.number;
   return numeral;
+}
+
+std::optional<std::int64_t> parseInteger(const std::string& text)
+{
+  const bool hexadecimal = text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+  const bool negative = text.size() > 1 && text[0] == '-';
+  const std::string_view digits = std::string_view(text).substr(hexadecimal ? 2 : negative ? 1 : 0);
+  const bool leading_zero = !hexadecimal && digits.size() > 1 && digits[0] == '0';
+  if (digits.empty() || digits[0] == '-' || leading_zero || digits.size() > (hexadecimal ? 8U : 10U))
+  {
+    return std::nullopt;
+  }
+  std::int64_t value = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto parsed = std::from_chars(digits.data(), end, value, hexadecimal ? 16 : 10);
+  if (parsed.ec != std::errc() || parsed.ptr != end)
+  {
+    return std::nullopt;
+  }
+  return negative ? -value : value;
 }
 
 double readDecimal(const std::string& text)

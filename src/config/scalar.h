@@ -3,34 +3,18 @@
 #ifndef INVERTER_BUS_CONFIG_SCALAR_H
 #define INVERTER_BUS_CONFIG_SCALAR_H
 
-#include <cstdint>
 #include <optional>
 #include <string>
+
+#include "inverter_bus/config/value.h"
 
 namespace inverter_bus
 {
 namespace config
 {
 /// One scalar of a YAML file, read as roslaunch reads it: PyYAML's SafeLoader (YAML 1.1) with rosparam's angles.
-struct Scalar
+struct Scalar : Value
 {
-  enum class Type
-  {
-    Null,
-    Boolean,
-    Integer,
-    Number,
-    Text
-  };
-  Type type = Type::Null;
-  bool boolean = false;
-  std::int64_t integer = 0;
-  /// Also set for integers; of those that 64 bits can't hold only this is right (and the type is Number).
-  double number = 0.0;
-  /// As written, without quotes.
-  std::string text;
-  /// In quotes, a block of text, or marked with !!str: a text whatever it looks like.
-  bool quoted = false;
   /// Empty, or why nobody should write it so: no reader of YAML 1.1 takes it, or others take it for something else (010, 1:30),
   /// and what to write instead.
   std::string trap;

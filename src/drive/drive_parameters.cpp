@@ -7,6 +7,7 @@
 #include <limits>
 #include <regex>
 
+#include "config/numerals.h"
 #include "drive/codec/codec.h"
 #include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
@@ -63,7 +64,7 @@ std::optional<Parameter> rawRegister(const std::string& name, const Profile& pro
   {
     return rawVariable(name);
   }
-  const auto number = parseInteger(name);
+  const auto number = config::parseInteger(name);
   if (!number || *number > 0xFFFF || *number < profile.first_register)
   {
     return std::nullopt;

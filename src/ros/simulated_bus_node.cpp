@@ -41,7 +41,7 @@ sim::BusConfig readConfig()
   inverter_bus::config::Value parameters = inverter_bus::ros_node::readParameters();
   for (const char* key : OWN_KEYS)
   {
-    parameters.map.erase(key);
+    parameters.erase(key);
   }
   inverter_bus::bench::SimulatedScanList list =
       inverter_bus::bench::readScanList(parameters, "~", inverter_bus::drive::shippedProfileDirectory());

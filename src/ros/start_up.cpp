@@ -59,7 +59,7 @@ std::string inverterLine(const bus::InverterConfig& config)
        << util::numberText(config.response_timeout) << " s";
   line << (config.stop_unexpected_motion ? ", stop_unexpected_motion" : "")
        << (config.release_on_exit ? ", release_on_exit" : "")
-       << (config.changes.overrides_yaml.empty() ? "" : ", with overrides");
+       << (config.changes.overrides.map.empty() ? "" : ", with overrides");
   for (const std::string& name : config.changes.confirm)
   {
     line << ", confirmed: " << name;

@@ -110,8 +110,7 @@ struct Configuration
 /// Judges the node's parameters (contract, section 2). \p place names the source in messages ("~" for ROS parameters or a
 /// file), \p profile_directory holds the profiles.
 /// \throws drive::ConfigurationError one line: key, value, place, what is allowed
-Configuration readConfiguration(const Value& parameters, const std::string& place,
-                                const std::string& profile_directory);
+Configuration readConfiguration(Value parameters, const std::string& place, const std::string& profile_directory);
 }  // namespace bus
 }  // namespace inverter_bus
 

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/config/value.h"
+
 namespace inverter_bus
 {
 namespace drive
@@ -337,15 +339,15 @@ struct Profile
 /// What a scan list entry changes in its profile.
 struct ProfileChanges
 {
-  /// YAML text of the entry's `overrides` map (a map of profile keys); empty: none.
-  std::string overrides_yaml;
-  /// Where the overrides stand, for messages.
+  /// The entry's `overrides`, a map of profile keys with its place; None: there are none.
+  config::Value overrides;
+  /// Where the entry names its drive, for messages.
   std::string place;
   /// Names of unconfirmed items that the user has checked, or `all`.
   std::vector<std::string> confirm;
   /// Names of skippableFields() that are left out: not read, not reported, nor what is unconfirmed in them.
   std::vector<std::string> skip;
-  /// Where \ref confirm stands, for messages; empty: where the overrides do.
+  /// Where \ref confirm is, for messages; empty: \ref place.
   std::string confirm_place;
 };
 

@@ -323,7 +323,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "manyRetries", "retries: 11\n" + ONE, { "'retries'", "11", "from 0 to 10" } },
         Wrong{ "brokenRetries", "retries: 1.5\n" + ONE, { "'retries'", "1.5", "whole number", "from 0 to 10" } },
         Wrong{ "offlineAfterNothing", "offline_after: 0\n" + ONE, { "'offline_after'", "0", "from 1 to 100" } },
-        Wrong{ "exclusiveNumber", "exclusive: 1\n" + ONE, { "'exclusive'", "1", "true, false" } },
+        Wrong{ "exclusiveNumber", "exclusive: 1\n" + ONE, { "'exclusive'", "1", "true or false" } },
         Wrong{ "highPriority", "realtime_priority: 100\n" + ONE, { "'realtime_priority'", "100", "from 0 to 99" } },
         Wrong{ "idleDivisorZero", "idle_divisor: 0\n" + ONE, { "'idle_divisor'", "0", "from 1 to 1000" } },
         Wrong{ "parameterAccess", "parameter_access: none\n" + ONE, { "'parameter_access'", "read_write, read_only" } },
@@ -424,13 +424,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "noEntryTimeout", entry("response_timeout: 0.0"), { BELT, "'response_timeout'", "above 0" } },
         Wrong{ "ratedCurrent", entry("rated_current: 0"), { BELT, "'rated_current'", "above 0" } },
         Wrong{ "ratedVoltage", entry("rated_voltage: high"), { BELT, "'rated_voltage'", "'high'" } },
-        Wrong{ "configureBlock", entry("configure_block: 1"), { BELT, "'configure_block'", "true, false" } },
+        Wrong{ "configureBlock", entry("configure_block: 1"), { BELT, "'configure_block'", "true or false" } },
         Wrong{ "shortBlock", entry("block_read: [1, 2]"), { BELT, "'block_read'", "[1, 2]", "five codes" } },
         Wrong{ "blockCode", entry("block_read: [1, 2, 3, 4, 15]"), { BELT, "'block_read'", "15", "0 to 14" } },
         Wrong{ "unexpectedMotion",
                entry("stop_unexpected_motion: please"),
                { BELT, "'stop_unexpected_motion'", ALLOWED } },
-        Wrong{ "releaseOnExit", entry("release_on_exit: 0"), { BELT, "'release_on_exit'", "true, false" } },
+        Wrong{ "releaseOnExit", entry("release_on_exit: 0"), { BELT, "'release_on_exit'", "true or false" } },
         Wrong{ "overridesList", entry("overrides: [1]"), { BELT, "'overrides'", "[1]", ALLOWED } },
         Wrong{ "unknownOverride", entry("overrides: {no_such_key: 1}"), { BELT, "no_such_key" } },
         Wrong{ "skipText", entry("skip: torque"), { BELT, "'skip'", ALLOWED } },
@@ -542,16 +542,16 @@ TEST(ConfigurationTest, valuesHaveTheTypesOfTheParameterServer)
 {
   const ScanListFile file("{a: 1, b: 1.0, c: '1', d: true, e: 0x10, f: 1.0e+3, g: text, h: 1e3, i: off, j: -3}\n");
   const Value value = readYamlFile(file.path());
-  EXPECT_EQ(Value::Type::Integer, value.map.at("a").type);
-  EXPECT_EQ(Value::Type::Number, value.map.at("b").type);
-  EXPECT_EQ(Value::Type::Text, value.map.at("c").type);
-  EXPECT_EQ(Value::Type::Boolean, value.map.at("d").type);
-  EXPECT_EQ(16, value.map.at("e").integer);
-  EXPECT_DOUBLE_EQ(1000.0, value.map.at("f").number);
-  EXPECT_EQ("text", value.map.at("g").text);
-  EXPECT_EQ(Value::Type::Text, value.map.at("h").type);
-  EXPECT_FALSE(value.map.at("i").boolean);
-  EXPECT_EQ(-3, value.map.at("j").integer);
+  EXPECT_EQ(Value::Type::Integer, value.find("a")->type);
+  EXPECT_EQ(Value::Type::Number, value.find("b")->type);
+  EXPECT_EQ(Value::Type::Text, value.find("c")->type);
+  EXPECT_EQ(Value::Type::Boolean, value.find("d")->type);
+  EXPECT_EQ(16, value.find("e")->integer);
+  EXPECT_DOUBLE_EQ(1000.0, value.find("f")->number);
+  EXPECT_EQ("text", value.find("g")->text);
+  EXPECT_EQ(Value::Type::Text, value.find("h")->type);
+  EXPECT_FALSE(value.find("i")->boolean);
+  EXPECT_EQ(-3, value.find("j")->integer);
 }
 
 TEST(ConfigurationTest, whatTheParameterServerWouldHideIsRefusedInAFile)

@@ -75,8 +75,8 @@ TEST_P(ScalarTest, isWhatRosparamMakesOfIt)
 
 INSTANTIATE_TEST_SUITE_P(
     Words, ScalarTest,
-    testing::Values(Case{ "", Type::Null }, Case{ "~", Type::Null }, Case{ "null", Type::Null },
-                    Case{ "Null", Type::Null }, Case{ "NULL", Type::Null }, Case{ "nULL", Type::Text },
+    testing::Values(Case{ "", Type::None }, Case{ "~", Type::None }, Case{ "null", Type::None },
+                    Case{ "Null", Type::None }, Case{ "NULL", Type::None }, Case{ "nULL", Type::Text },
                     Case{ "yes", Type::Boolean, 1 }, Case{ "Yes", Type::Boolean, 1 }, Case{ "YES", Type::Boolean, 1 },
                     Case{ "on", Type::Boolean, 1 }, Case{ "ON", Type::Boolean, 1 }, Case{ "true", Type::Boolean, 1 },
                     Case{ "True", Type::Boolean, 1 }, Case{ "no", Type::Boolean, 0 }, Case{ "No", Type::Boolean, 0 },
@@ -158,7 +158,7 @@ TEST(Scalar, tagsSayWhatItIs)
   EXPECT_EQ(Type::Number, readScalar("3", yaml + "float").type);
   EXPECT_DOUBLE_EQ(100.0, readScalar("1e2", yaml + "float").number);
   EXPECT_TRUE(readScalar("YeS", yaml + "bool").boolean);
-  EXPECT_EQ(Type::Null, readScalar("x", yaml + "null").type);
+  EXPECT_EQ(Type::None, readScalar("x", yaml + "null").type);
   EXPECT_DOUBLE_EQ(2 * PI, readScalar("2*pi", "!radians").number);
   EXPECT_DOUBLE_EQ(9.0, readScalar("(1+2)*3", "!radians").number);
   EXPECT_DOUBLE_EQ(PI, readScalar("180", "!degrees").number);

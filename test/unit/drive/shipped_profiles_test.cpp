@@ -33,11 +33,11 @@ std::vector<std::string> armed(const Drive& drive)
   return names;
 }
 
-ProfileChanges changes(const std::vector<std::string>& confirm, const std::string& overrides = "")
+ProfileChanges changes(const std::vector<std::string>& confirm, const std::string& overrides = "{}")
 {
   ProfileChanges result;
   result.confirm = confirm;
-  result.overrides_yaml = overrides;
+  result.overrides = overridesOf(overrides);
   return result;
 }
 

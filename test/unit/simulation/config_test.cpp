@@ -90,7 +90,7 @@ TEST(SimulatedBusConfig, errorsNameKeyValueAndWhatIsAllowed)
   }
   EXPECT_NE(std::string::npos, models.find("omron_mx2, omron_rx, "));
   EXPECT_EQ(
-      "drive: foo of a can't be simulated (allowed: " + models + "or one of them, or profile, as simulation/a/model)",
+      "drive: foo of a can't be simulated (allowed: " + models + "or one of them, or profile, as simulation.a.model)",
       errorOf("scan_list: [{name: a, node: 1, drive: foo}]"));
   EXPECT_EQ("a: omron_rx has no station 33 (1-32)", errorOf("scan_list: [{name: a, node: 33, drive: omron_rx}]"));
   EXPECT_EQ("a: omron_rx has no baud rate 38400",

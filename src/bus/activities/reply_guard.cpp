@@ -90,8 +90,8 @@ bool ReplyGuard::readBackSafely(Inverter& inverter, InFlight& current) const
 /// A read that no late reply can answer; nothing: this drive has none.
 std::optional<wire::Request> ReplyGuard::spareRead(const Inverter& inverter) const
 {
-  std::vector<drive::ReadBlock> reads = inverter.refresh.fastBlocks();
-  const std::vector<drive::ReadBlock> slow = inverter.refresh.slowBlocks();
+  std::vector<drive::ReadBlock> reads = inverter.refresh.reads().blocks(StatusRead::Kind::Fast);
+  const std::vector<drive::ReadBlock> slow = inverter.refresh.reads().blocks(StatusRead::Kind::Slow);
   reads.insert(reads.end(), slow.begin(), slow.end());
   for (std::optional<drive::ReadBlock> read : reads)
   {

@@ -27,9 +27,9 @@ bool mustBeSeenRunning(const Inverter& inverter)
 std::optional<Write> Velocities::nextWrite(TimePoint now, const Inverter& inverter) const
 {
   const bool in_force = inverter.mayRepeatWords(now);
-  if (inverter.refresh.block() && (in_force || !inverter.movement.runConfirmed()))
+  if (inverter.refresh.chosen().read() && (in_force || !inverter.movement.runConfirmed()))
   {
-    auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.block() : std::nullopt);
+    auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.chosen().read() : std::nullopt);
     if (combined && bus_.line.mayAsk(combined->request))
     {
       return combined;

@@ -211,17 +211,17 @@ std::vector<int> readBlock(const Section& entry, const std::vector<int>& fallbac
   return codes;
 }
 
-std::optional<double> readRating(const Section& entry, const std::string& key, const std::string& unit)
+std::optional<double> readRating(const Section& entry, const std::string& key, const Range& range)
 {
   const auto found = entry.find(key);
-  return found ? found->number({ 0.0, 10000.0, true, unit }) : std::nullopt;
+  return found ? found->number(range) : std::nullopt;
 }
 
 void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& config)
 {
   config.limit = readLimit(entry, bus.limit);
-  config.rated_current = readRating(entry, "rated_current", "A");
-  config.rated_voltage = readRating(entry, "rated_voltage", "V");
+  config.rated_current = readRating(entry, "rated_current", { 0.0, 10000.0, true, "A" });
+  config.rated_voltage = readRating(entry, "rated_voltage", { 0.0, 10000.0, true, "V" });
   config.configure_block = entry.flag("configure_block", config.configure_block);
   config.block_read = readBlock(entry, config.block_read);
   config.stop_unexpected_motion = entry.flag("stop_unexpected_motion", config.stop_unexpected_motion);

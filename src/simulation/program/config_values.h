@@ -30,8 +30,7 @@ public:
   void refuseKey(const config::Spot& spot, const config::Entry& entry, const std::vector<std::string>& known) override;
 };
 
-/// Key `baud_rate`, `parity`, `data_bits` or `stop_bits`, into \p line.
-/// @return false for another key
+/// Key `baud_rate`, `parity`, `data_bits` or `stop_bits`, into \p line. False for another key. \throws ConfigError
 bool readLineKey(const std::string& key, const Cursor& value, LineSettings& line);
 }  // namespace simulation
 }  // namespace inverter_bus

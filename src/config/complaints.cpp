@@ -81,8 +81,8 @@ void Complaints::refuse(const Spot& spot, const Value& value, const std::string&
 {
   const std::string given =
       value.isScalar() ? "value '" + util::printable(value.text) + "'" + (value.quoted ? " (a text, in quotes)" : "")
-      : value.type == Value::Type::List ? "a list stands here"
-      : value.type == Value::Type::Map  ? "a map stands here"
+      : value.type == Value::Type::List ? "is a list"
+      : value.type == Value::Type::Map  ? "is a map"
                                         : "has no value";
   complain(spot, given + ": allowed: " + allowed);
 }

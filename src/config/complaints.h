@@ -22,8 +22,8 @@ struct Spot
 /// "place: key 'path': what": one line, fit for a log.
 std::string lineOf(const Spot& spot, const std::string& what);
 
-/// Takes what is wrong with a file or a tree. Whether the first mistake ends the reading (by an exception) or all are collected,
-/// and in which words, is decided by who reads; the words here are those of a profile.
+/// Receives the mistakes in a file or a tree. Each reader decides whether the first one ends the reading (by an exception) or all
+/// are collected, and how they are worded; the words here are those of a profile.
 class Complaints
 {
 public:
@@ -31,7 +31,7 @@ public:
 
   /// \p what is any bytes.
   virtual void complain(const Spot& spot, const std::string& what) = 0;
-  /// \p problem: "is no number"; \p allowed: "a number from 0 to 10".
+  /// \p problem: "is not a number"; \p allowed: "a number from 0 to 10".
   virtual void refuse(const Spot& spot, const Value& value, const std::string& problem, const std::string& allowed);
   /// The key at \p spot must be there.
   virtual void miss(const Spot& spot, const std::string& allowed);

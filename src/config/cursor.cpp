@@ -83,7 +83,7 @@ void Cursor::complain(const std::string& what) const
 void Cursor::rejectNumber(const std::string& allowed, const std::string& problem) const
 {
   std::string hint = is(Value::Type::Text) ? hintFor(value_->text) : "";
-  if (is(Value::Type::Number) && std::floor(value_->number) == value_->number && problem == "is no whole number")
+  if (is(Value::Type::Number) && std::floor(value_->number) == value_->number && problem == "is not a whole number")
   {
     hint = "write it without a decimal point";
   }
@@ -93,7 +93,7 @@ void Cursor::rejectNumber(const std::string& allowed, const std::string& problem
 void Cursor::rejectText(const std::string& allowed, const std::string& problem) const
 {
   const bool other = value_->isScalar() && !is(Value::Type::Text);
-  reject(allowed + (other ? "; in quotes, since YAML takes it for something else than a text" : ""), problem);
+  reject(allowed + (other ? ", in quotes: without them YAML does not read it as a text" : ""), problem);
 }
 
 bool Cursor::is(Value::Type type) const
@@ -121,7 +121,7 @@ std::optional<double> Cursor::asNumber() const
   if (meant)
   {
     complaints_->remark(spot(), *value_,
-                        "is a text to YAML and taken as the number that it looks like; " + hintFor(value_->text));
+                        "is a text in YAML, read as the number it looks like; " + hintFor(value_->text));
   }
   return meant;
 }
@@ -133,7 +133,7 @@ std::optional<std::int64_t> Cursor::integer(std::int64_t lowest, std::int64_t hi
   if (!whole || value < lowest || value > highest)
   {
     rejectNumber("an integer from " + std::to_string(lowest) + " to " + std::to_string(highest) + ", decimal or 0x...",
-                 whole ? "is out of range" : "is no whole number");
+                 whole ? "is out of range" : "is not a whole number");
     return std::nullopt;
   }
   return value;
@@ -147,7 +147,7 @@ std::optional<double> Cursor::number(const Range& range) const
                     *value <= range.maximum && std::isfinite(*value);
   if (!fits)
   {
-    rejectNumber(rangeText(range), !value                  ? "is no number"
+    rejectNumber(rangeText(range), !value                  ? "is not a number"
                                    : std::isfinite(*value) ? "is out of range"
                                                            : "is not finite");
     return std::nullopt;
@@ -161,7 +161,7 @@ std::optional<double> Cursor::positive() const
   // Resolutions and frequencies: beyond these bounds counts would leave what 32 bits and a double can hold.
   if (!value || !(*value >= 1e-9 && *value <= 1e9))
   {
-    rejectNumber("a number above 0 (1e-9 to 1e9)", value ? "is out of range" : "is no number");
+    rejectNumber("a number above 0 (1e-9 to 1e9)", value ? "is out of range" : "is not a number");
     return std::nullopt;
   }
   return value;
@@ -171,7 +171,7 @@ std::optional<bool> Cursor::flag() const
 {
   if (!is(Value::Type::Boolean))
   {
-    rejectNumber("true or false", "is no truth value");
+    rejectNumber("true or false", "is not a truth value");
     return std::nullopt;
   }
   return value_->boolean;
@@ -182,7 +182,7 @@ std::optional<std::string> Cursor::text() const
   const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
   if (!is(Value::Type::Text) || std::any_of(value_->text.begin(), value_->text.end(), control))
   {
-    rejectText("a text on one line", "is no text on one line");
+    rejectText("a text on one line", "is not a text on one line");
     return std::nullopt;
   }
   return value_->text;
@@ -192,7 +192,7 @@ std::optional<std::string> Cursor::filledText() const
 {
   if (!is(Value::Type::Text) || value_->text.empty())
   {
-    rejectText("a text", is(Value::Type::Text) ? "is empty" : "is no text");
+    rejectText("a text", is(Value::Type::Text) ? "is empty" : "is not a text");
     return std::nullopt;
   }
   return value_->text;
@@ -202,7 +202,7 @@ std::optional<std::string> Cursor::name() const
 {
   if (!is(Value::Type::Text) || !isName(value_->text))
   {
-    rejectText(NAME_FORM, "is no name");
+    rejectText(NAME_FORM, "is not a name");
     return std::nullopt;
   }
   return value_->text;
@@ -212,7 +212,7 @@ std::optional<std::string> Cursor::choice(const std::vector<std::string>& allowe
 {
   if (!is(Value::Type::Text) || !isOneOf(allowed, value_->text))
   {
-    reject(util::joined(allowed), "is none of the choices");
+    reject(util::joined(allowed), "is not one of the choices");
     return std::nullopt;
   }
   return value_->text;
@@ -222,7 +222,7 @@ std::optional<std::int64_t> Cursor::integerOf(const std::vector<std::int64_t>& a
 {
   if (!is(Value::Type::Integer) || !isOneOf(allowed, value_->integer))
   {
-    rejectNumber(util::joined(std::vector<int>(allowed.begin(), allowed.end())), "is none of the choices");
+    rejectNumber(util::joined(std::vector<int>(allowed.begin(), allowed.end())), "is not one of the choices");
     return std::nullopt;
   }
   return value_->integer;
@@ -233,7 +233,7 @@ std::vector<Cursor> Cursor::list() const
   std::vector<Cursor> result;
   if (!isList())
   {
-    reject("a list", "is no list");
+    reject("a list", "is not a list");
     return result;
   }
   for (std::size_t i = 0; i < value_->list.size(); ++i)
@@ -250,14 +250,14 @@ std::optional<std::vector<std::string>> Cursor::texts(const std::string& allowed
   {
     if (element.type != Value::Type::Text)
     {
-      reject(allowed, "holds something else than names");
+      reject(allowed, "holds something other than names");
       return std::nullopt;
     }
     result.push_back(element.text);
   }
   if (!isList())
   {
-    reject(allowed, "is no list");
+    reject(allowed, "is not a list");
     return std::nullopt;
   }
   return result;
@@ -268,7 +268,7 @@ std::vector<std::pair<std::string, Cursor>> Cursor::entries() const
   std::vector<std::pair<std::string, Cursor>> result;
   if (!isMap())
   {
-    reject("a map", "is no map");
+    reject("a map", "is not a map");
     return result;
   }
   for (const Entry& entry : value_->map)
@@ -282,7 +282,7 @@ Section::Section(const Cursor& cursor) : cursor_(cursor)
 {
   if (!cursor.isMap())
   {
-    cursor.reject("a map", "is no map");
+    cursor.reject("a map", "is not a map");
   }
 }
 

@@ -17,7 +17,7 @@ namespace inverter_bus
 {
 namespace config
 {
-/// What isName() wants, in words.
+/// The names that isName() accepts, in words.
 extern const char* const NAME_FORM;
 
 /// Letters, digits, '_' and '-'; at least one.
@@ -74,7 +74,7 @@ public:
 
 private:
   bool is(Value::Type type) const;
-  /// What is wanted as a number. 1e2 is a text to YAML and a number to people; nobody means a text by it here.
+  /// A value where a number is wanted. 1e2 is a text to YAML and a number to people; here it is never meant as a text.
   std::optional<double> asNumber() const;
   /// With a hint where the text looks like what was wanted.
   void rejectNumber(const std::string& allowed, const std::string& problem) const;

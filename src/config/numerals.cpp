@@ -103,7 +103,7 @@ WholeNumeral readWholeNumeral(const std::string& text)
   if (begins(rest, "0b") || begins(rest, "0x"))
   {
     digits = digitsOf(rest.substr(2), rest[1] == 'b' ? 2 : 16);
-    numeral.trap = rest.size() == 2 ? "is no number; allowed: a whole number" : "";
+    numeral.trap = rest.size() == 2 ? "is not a number; allowed: a whole number" : "";
   }
   else if (rest.find(':') != std::string::npos)
   {
@@ -173,7 +173,7 @@ double readDecimal(const std::string& text)
     std::istringstream stream(rest);
     stream.imbue(std::locale::classic());
     stream >> magnitude;
-    // What is too large leaves the largest number and the mark of a failure.
+    // A number that is too large leaves the largest one and the mark of a failure.
     magnitude = stream.fail() && magnitude > 1.0 ? std::numeric_limits<double>::infinity() : magnitude;
   }
   return negative ? -magnitude : magnitude;

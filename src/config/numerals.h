@@ -17,7 +17,7 @@ struct WholeNumeral
   bool fits = true;  ///< into 64 bits
   std::int64_t integer = 0;
   double number = 0.0;
-  /// Empty, or why nobody should write it so, and what to write.
+  /// Empty, or why it should not be written like this, and what to write.
   std::string trap;
 };
 

@@ -128,7 +128,7 @@ void setAngle(Scalar& scalar, const std::optional<double>& angle)
   setNumber(scalar, angle.value_or(0.0));
   if (!angle)
   {
-    scalar.trap = "is no angle; allowed: deg(NUMBER), or rad(...) of numbers, pi, + - * / and **";
+    scalar.trap = "is not an angle; allowed: deg(NUMBER), or rad(...) of numbers, pi, + - * / and **";
   }
 }
 
@@ -177,7 +177,7 @@ void setTaggedBoolean(Scalar& scalar)
   setBoolean(scalar, isTrue(lower));
   if (!isTrue(lower) && !isFalse(lower))
   {
-    scalar.trap = "is no truth value; allowed: true, false";
+    scalar.trap = "is not a truth value; allowed: true or false";
   }
 }
 
@@ -196,7 +196,7 @@ void setTaggedNumber(Scalar& scalar, bool whole)
   else
   {
     setText(scalar);
-    scalar.trap = whole ? "is no whole number; allowed: a whole number" : "is no number; allowed: a number";
+    scalar.trap = whole ? "is not a whole number; allowed: a whole number" : "is not a number; allowed: a number";
   }
 }
 

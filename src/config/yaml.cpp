@@ -24,7 +24,7 @@ namespace
 {
 /// Deeper than any file of this package; an alias that contains itself would have no bottom.
 constexpr int DEEPEST = 20;
-/// More than any file of this package; a few nested aliases can stand for billions of values.
+/// More than any file of this package; a few nested aliases can make billions of values.
 constexpr std::size_t MOST_VALUES = 200000;
 
 /// 0x21, 33 and '33' are the same key.
@@ -134,8 +134,9 @@ private:
     if (value.type == Value::Type::None)
     {
       add(value.place, path,
-          "has no value, and roslaunch can't load that: allowed: a value (a # begins a comment: quotes around a text "
-          "with it), or no such key");
+          "has no value, and roslaunch can't load that: allowed: a value (# begins a comment: put a text that has one "
+          "in "
+          "quotes), or leave the key out");
     }
     if (value.type == Value::Type::Integer && (value.integer < LOWEST || value.integer > HIGHEST))
     {
@@ -207,7 +208,8 @@ private:
     if (for_parameters_ && key.type != Value::Type::Text)
     {
       add(placeOf(node), below(path, key.text),
-          "the key '" + shown + "' is no text, and roslaunch can load no other: allowed: '" + shown + "' in quotes");
+          "the key '" + shown + "' is not a text, and roslaunch can load no others: allowed: '" + shown +
+              "' in quotes");
     }
     return key;
   }
@@ -221,7 +223,7 @@ private:
       if (map.type != Value::Type::Map)
       {
         add(value.place, below(path, "<<"),
-            "merges something else than a map: allowed: *NAME of a map, or a list of those");
+            "merges something other than a map: allowed: *NAME of a map, or a list of them");
         return;
       }
       merged.insert(merged.end(), map.map.begin(), map.map.end());

@@ -134,7 +134,7 @@ std::optional<TextProblem> problemOfText(const std::string& yaml)
   }
   if (const int line = lineOfUnprintable(yaml))
   {
-    return TextProblem{ line, "not valid YAML: a control character, or bytes that are no UTF-8" };
+    return TextProblem{ line, "not valid YAML: a control character, or bytes that are not UTF-8" };
   }
   const SpacingMistakes spacing = findSpacingMistakes(yaml);
   if (spacing.tab > 0)
@@ -143,7 +143,7 @@ std::optional<TextProblem> problemOfText(const std::string& yaml)
   }
   if (spacing.open_quote > 0)
   {
-    return TextProblem{ spacing.open_quote, "not valid YAML: quotes that begin here don't end" };
+    return TextProblem{ spacing.open_quote, "not valid YAML: the quotes that are opened here are never closed" };
   }
   return std::nullopt;
 }

@@ -18,12 +18,12 @@ struct TextProblem
 };
 
 /// What is wrong with \p yaml as a text, before a parser sees it: characters that PyYAML refuses and yaml-cpp does not (control
-/// characters, bytes that are no UTF-8, tabs between words), and blocks nested so deeply that a parser which recurses would
+/// characters, bytes that are not UTF-8, tabs between words), and blocks nested so deeply that a parser which recurses would
 /// leave its stack.
 std::optional<TextProblem> problemOfText(const std::string& yaml);
 
 /// Documents in \p yaml: 0, 1, or 2 for more. Looks at the text before nodes are made of it, since yaml-cpp collects
-/// documents without end where a comma stands at the beginning of one.
+/// documents without end where one begins with a comma.
 /// \throws YAML::Exception for malformed text, and for one that is nested too deeply
 int countDocuments(const std::string& yaml);
 }  // namespace config

@@ -74,13 +74,13 @@ std::string inverterLine(const bus::InverterConfig& config)
 
 bool waitForMaster(const util::SteadyEvent& end)
 {
-  bool told = false;
+  bool said = false;
   while (!ros::master::check())
   {
-    if (!told)
+    if (!said)
     {
       log(bus::Level::Warn, "waiting for the ROS master at " + ros::master::getURI() + ": start roscore or roslaunch");
-      told = true;
+      said = true;
     }
     if (end.waitFor(MASTER_PERIOD))
     {

@@ -103,7 +103,7 @@ struct Configuration
 {
   BusConfig bus;
   std::vector<drive::Drive> drives;
-  /// What was taken and should be mended: one line each, for the log and for whoever checks a file.
+  /// What was accepted but should be corrected: one line each, for the log and for programs that check a file.
   std::vector<std::string> warnings;
 };
 

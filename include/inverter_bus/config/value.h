@@ -49,7 +49,7 @@ struct Value
 
   bool isScalar() const;
 
-  /// Null if the key is not there, or this is no map. 0x21 and 33 are the same key.
+  /// Null if the key is not there, or this is not a map. 0x21 and 33 are the same key.
   Value* find(const std::string& key);
   const Value* find(const std::string& key) const;
   void erase(const std::string& key);

@@ -177,7 +177,7 @@ public:
   std::vector<Outstanding> outstanding() const;
   /// Modbus TCP: the gateway has shown on this connection that it keeps transaction numbers and units.
   bool gatewayTrusted() const;
-  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies bear transaction number 0 ..."),
+  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies carry transaction number 0 ..."),
   /// as seen since the start; empty as long as it does not. Name it once.
   std::string gatewayQuirk() const;
   /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come

@@ -49,7 +49,7 @@ void readPort(const Section& section, BusConfig& bus)
       wire::parseTcpAddress(bus.port.substr(scheme_end + 3), bus.modbus_tcp ? wire::MODBUS_TCP_PORT : 0, error);
   if (!bus.gateway)
   {
-    fail(section, "port", "is no address: " + error, allowed);
+    fail(section, "port", "is not an address: " + error, allowed);
   }
 }
 
@@ -58,7 +58,7 @@ std::string readProtocol(const Section& section, const BusConfig& bus)
   std::string protocol = section.choice("protocol", { "modbus_rtu", "compoway_f" }, "modbus_rtu");
   if (protocol == "compoway_f" && bus.gateway)
   {
-    fail(section, "protocol", "does not go over " + bus.port, "modbus_rtu, or a serial device as port");
+    fail(section, "protocol", "cannot be used over " + bus.port, "modbus_rtu, or a serial device as port");
   }
   return protocol;
 }
@@ -95,7 +95,7 @@ wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
   serial.data_bits = static_cast<unsigned>(section.integerOf("data_bits", { 7, 8 }, compoway ? 7 : 8));
   if (serial.data_bits != 8 && !compoway)
   {
-    fail(section, "data_bits", "is too few for modbus_rtu, whose characters have 8", "8");
+    fail(section, "data_bits", "is too few: the characters of modbus_rtu have 8", "8");
   }
   serial.stop_bits = static_cast<unsigned>(section.integerOf("stop_bits", { 1, 2 }, compoway ? 2 : 1));
   serial.transmission = compoway ? wire::Transmission::Plain : wire::Transmission::Modbus;
@@ -191,11 +191,11 @@ void checkUnique(const Section& entry, const InverterConfig& inverter, const std
   {
     if (other.config.name == inverter.name)
     {
-      fail(entry, "name", "stands twice (node " + std::to_string(other.config.node) + " has it too)", "unique names");
+      fail(entry, "name", "is used twice (node " + std::to_string(other.config.node) + " has it too)", "unique names");
     }
     if (other.config.node == inverter.node)
     {
-      fail(entry, "node", "stands twice (" + other.config.name + " has it too)", "unique station numbers");
+      fail(entry, "node", "is used twice (" + other.config.name + " has it too)", "unique station numbers");
     }
   }
 }
@@ -229,8 +229,8 @@ Configuration inNodeOrder(BusConfig bus, std::vector<ConfiguredInverter> inverte
   return configuration;
 }
 
-/// Below the node's name may lie what was meant for others: a helper node's parameters, a name that a launch file gives to all
-/// nodes. What resembles a key of ours stays, to be refused.
+/// Parameters below the node's name may be meant for other nodes: those of a helper node, or one that a launch file gives to all
+/// nodes. Any that resembles one of this node's keys stays, to be refused.
 void dropForeignKeys(Value& parameters, std::vector<std::string>& remarks)
 {
   const auto foreign = [&parameters, &remarks](const config::Entry& entry) {
@@ -241,8 +241,8 @@ void dropForeignKeys(Value& parameters, std::vector<std::string>& remarks)
     {
       remarks.push_back(drive::oneLine(parameters.place + ": parameter '" + util::printable(entry.key) +
                                        "' = " + describe(entry.value) +
-                                       " is none of this node's and is ignored (another node's, or one that a launch "
-                                       "file sets for all of them)"));
+                                       " does not belong to this node and is ignored (another node's, or one that a "
+                                       "launch file sets for all nodes)"));
     }
     return drop || isLibraryKey(entry.key);
   };

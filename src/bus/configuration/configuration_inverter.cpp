@@ -37,7 +37,7 @@ std::string readName(const Section& entry)
   constexpr std::size_t LONGEST_NAME = 255;
   if (name.size() > LONGEST_NAME || !std::regex_match(name, GRAPH_NAME))
   {
-    fail(entry, "name", "is no legal ROS name", allowed);
+    fail(entry, "name", "is not a legal ROS name", allowed);
   }
   if (std::find(RESERVED_NAMES.begin(), RESERVED_NAMES.end(), name) != RESERVED_NAMES.end())
   {
@@ -64,18 +64,18 @@ std::vector<std::string> readConfirm(const Section& entry)
                  : std::vector<std::string>();
 }
 
-/// What can't be left out, and what does not exist, is a mistake: a safety word that somebody believes skipped, or a field
-/// that he believes read, is neither.
+/// A field that can't be left out, or does not exist, is a mistake: the user would believe that a safety word is skipped, or that
+/// a field is read, when neither is so.
 void checkSkipped(const Section& entry, const std::string& field)
 {
-  const std::string allowed = "fields of the status that nothing depends on: " + util::joined(drive::skippableFields());
+  const std::string allowed = "status fields that nothing depends on: " + util::joined(drive::skippableFields());
   if (drive::protectedFields().count(field) != 0)
   {
     fail(entry, "skip", "holds '" + field + "', which the driver can't do without", allowed);
   }
   if (drive::skippableFields().count(field) == 0)
   {
-    fail(entry, "skip", "holds '" + util::printable(field) + "', which is no field of the status", allowed);
+    fail(entry, "skip", "holds '" + util::printable(field) + "', which is not a status field", allowed);
   }
 }
 
@@ -101,7 +101,7 @@ drive::ProfileChanges readChanges(const Section& entry)
   {
     if (!overrides->isMap())
     {
-      fail(entry, "overrides", "is no map", "a map of profile keys");
+      fail(entry, "overrides", "is not a map", "a map of profile keys");
     }
     changes.overrides = overrides->value();
   }
@@ -140,7 +140,7 @@ void checkProtocol(const Section& entry, const drive::Profile& profile, const Bu
 {
   if (profile.protocol != bus.protocol)
   {
-    fail(entry, "drive", "speaks " + profile.protocol + ", the bus " + bus.protocol,
+    fail(entry, "drive", "speaks " + profile.protocol + ", but the bus speaks " + bus.protocol,
          "a drive that speaks " + bus.protocol);
   }
 }
@@ -197,7 +197,7 @@ std::vector<int> readBlock(const Section& entry, const std::vector<int>& fallbac
   }
   if (!block->isList() || block->value().list.size() != 5)
   {
-    fail(entry, "block_read", "is no list of five", allowed);
+    fail(entry, "block_read", "is not a list of five", allowed);
   }
   std::vector<int> codes;
   for (const Value& code : block->value().list)
@@ -266,7 +266,7 @@ ConfiguredInverter readInverter(const Section& entry, const BusConfig& bus, cons
 {
   InverterConfig config;
   config.name = readName(entry);
-  // Before the profile is read, so that nonsense is named as such; its own range comes with the profile.
+  // Before the profile is read, so that an absurd value gets its own message; the drive's own range comes with the profile.
   entry.require("node", "a station number");
   const bool from_zero = bus.modbus_tcp || bus.protocol == "compoway_f";
   entry.integer("node", from_zero ? 0 : 1, bus.modbus_tcp ? LAST_UNIT : LAST_STATION, 0);

@@ -19,7 +19,7 @@ bool contains(const Keys& keys, const std::string& key)
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-/// Of the contract, for a version to come: ignored they would promise what nobody does.
+/// Keys that the contract has for a later version: to ignore them would promise what is not done.
 const Keys& laterKeys()
 {
   static const Keys KEYS{ "slow_interval", "in_service", "parameters", "parameters_on_difference", "configure_map" };
@@ -36,8 +36,8 @@ const Keys& simulationKeys()
   return KEYS;
 }
 
-/// Parameters that many ROS nodes have, and that a launch file sets at its top level for all of them; they are not ours although
-/// `baud_rate` shares a word with them.
+/// Parameters that many ROS nodes have, and that a launch file sets at its top level for all of them; they are not this node's,
+/// although `baud_rate` shares a word with them.
 bool isOrdinaryRosName(const std::string& key)
 {
   static const Keys NAMES{ "rate", "publish_rate", "update_rate", "loop_rate", "control_rate" };
@@ -112,11 +112,11 @@ std::string remarkOn(const std::string& key)
 {
   if (contains(laterKeys(), key))
   {
-    return "a later version offers it, this one does not yet";
+    return "a later version will have it; this one does not";
   }
   if (contains(entryKeys(), key))
   {
-    return "it belongs into scan_list or defaults";
+    return "it belongs in scan_list or defaults";
   }
   if (contains(busKeys(), key))
   {
@@ -124,7 +124,7 @@ std::string remarkOn(const std::string& key)
   }
   if (contains(simulationKeys(), key))
   {
-    return "it belongs into simulation";
+    return "it belongs in simulation";
   }
   const std::string meant = isOrdinaryRosName(key) ? "" : config::nearest(key, allKeys());
   return meant.empty() ? "" : "did you mean '" + meant + "'?";

@@ -32,11 +32,11 @@ public:
   void refuseKey(const config::Spot& spot, const config::Entry& entry, const std::vector<std::string>& known) override;
   void remark(const config::Spot& spot, const Value& value, const std::string& what) override;
 
-  /// What is taken although it should be mended, one line each.
+  /// What is accepted but should be corrected, one line each.
   std::vector<std::string> remarks;
 };
 
-/// A map of the configuration that is being judged. \throws drive::ConfigurationError if \p value is no map
+/// A map of the configuration that is being judged. \throws drive::ConfigurationError if \p value is not a map
 Section sectionOf(const Value& value, config::Complaints& complaints);
 
 /// \throws drive::ConfigurationError "place: key 'key' = value: problem; allowed: ..."

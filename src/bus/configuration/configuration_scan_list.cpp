@@ -36,7 +36,7 @@ std::uint32_t maskFromText(const Section& bus, const std::string& text)
   std::smatch match;
   if (!std::regex_match(text, match, HEXADECIMAL))
   {
-    fail(bus, SCAN_LIST, "is no bit mask", MASK_FORMS);
+    fail(bus, SCAN_LIST, "is not a bit mask", MASK_FORMS);
   }
   return static_cast<std::uint32_t>(std::strtoul(match[2].str().c_str(), nullptr, 16));
 }

@@ -25,7 +25,7 @@ bool isUnknown(const Cursor& cursor)
   return cursor.value().isScalar() && cursor.value().text == UNKNOWN;
 }
 
-/// A place or value that nobody knows must carry a name, or it would look like one that may be used.
+/// An unknown place or value must have a name, or it would look like one that may be used.
 void noteMissing(const Section& map, Item& item)
 {
   item.missing = true;
@@ -45,7 +45,7 @@ const Constant* findConstant(const Cursor& cursor, const Numbering& numbering)
   return nullptr;
 }
 
-/// What hangs on a constant is as unconfirmed as the constant.
+/// An item that depends on a constant is as unconfirmed as the constant.
 void inheritMark(const Constant& constant, Item& item)
 {
   if (!constant.unconfirmed.empty())
@@ -128,7 +128,7 @@ void readVariable(const Section& map, const Cursor& cursor, Item& item, bool& go
   const std::string text = cursor.text().value_or("");
   if (!std::regex_match(text, match, FORM))
   {
-    cursor.reject("variable type and address in upper-case hexadecimal digits, as C1/0000");
+    cursor.reject("variable type and address in upper-case hexadecimal digits, such as C1/0000");
     good = false;
     return;
   }
@@ -295,7 +295,7 @@ std::vector<std::string> placeKeys(const Numbering& numbering, const ItemRules& 
   {
     return rules.coil ? std::vector<std::string>{ "coil", "register" } : std::vector<std::string>{ "register" };
   }
-  // What is written may be an operation code; the controller's status is only read.
+  // An operation code may be written; the controller's status is only read.
   return rules.written                               ? std::vector<std::string>{ "variable", "operation" }
          : rules.coil || rules.values || rules.scale ? std::vector<std::string>{ "variable", "controller_status" }
                                                      : std::vector<std::string>{ "variable" };

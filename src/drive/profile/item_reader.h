@@ -40,7 +40,7 @@ struct Numbering
   std::int64_t highest(Space space) const;
 };
 
-/// Which kinds of item may stand at a place.
+/// Which kinds of item are allowed at a place.
 struct ItemRules
 {
   bool coil = true;
@@ -58,7 +58,7 @@ struct ItemRules
   bool written = false;
 };
 
-/// What stands where a value is not known to anybody.
+/// Takes the place of an unknown value.
 constexpr const char* UNKNOWN = "unknown";
 
 /// Reads the keys of an item: register or coil and what belongs to it, `unconfirmed` and `source`. Other keys of the

@@ -11,7 +11,7 @@ namespace drive
 {
 namespace
 {
-/// Whoever has more mistakes than these mends the first ones first.
+/// With more mistakes than these, the first ones are corrected first.
 constexpr std::size_t MOST_LINES = 50;
 }  // namespace
 

@@ -14,7 +14,7 @@ namespace drive
 {
 namespace
 {
-/// A parameter that nobody has confirmed isn't read: what hangs on it then goes by the assumed values.
+/// An unconfirmed parameter isn't read: what depends on it then uses the assumed values.
 void dropIfUnconfirmed(std::string& name, const Profile& profile)
 {
   const auto parameter = profile.parameters.find(name);
@@ -77,11 +77,11 @@ bool leftOutForUnit(const std::string& field, const Item& item, const Cursor& cu
   {
     return false;
   }
-  // Whoever has more of them mends the first ones first.
+  // With more of them than these, the first ones are corrected first.
   constexpr std::size_t MOST_MISTAKES = 50;
   if (profile.mistakes.size() < MOST_MISTAKES)
   {
-    profile.mistakes.push_back(config::lineOf(cursor.spot(), mistake + "; until then it is not shown"));
+    profile.mistakes.push_back(config::lineOf(cursor.spot(), mistake + "; it is not shown until this is corrected"));
   }
   return true;
 }

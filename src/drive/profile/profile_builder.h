@@ -39,7 +39,7 @@ bool leftOutForUnit(const std::string& field, const Item& item, const Cursor& cu
 /// Names that operation_codes may have.
 const std::vector<std::string>& operationCodeNames();
 
-/// What only shows when all sections are read: references, functions, limits, overlaps.
+/// Mistakes that only show when all sections are read: references, functions, limits, overlaps.
 void checkReferences(const Value& root, const Profile& profile, config::Complaints& complaints);
 void checkAbilities(const Value& root, const Profile& profile, config::Complaints& complaints);
 void checkBlock(const Value& root, const Profile& profile, config::Complaints& complaints);

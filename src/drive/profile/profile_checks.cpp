@@ -44,7 +44,7 @@ void checkSteps(const std::string& name, const Sequence& sequence, const Profile
   const bool moves = name == "forward" || name == "reverse";
   if (moves && profile.sequences.count("stop") == 0)
   {
-    place.complain("can set a motor running, but the sequence stop is missing: must be given");
+    place.complain("can start a motor, but the sequence stop is missing: must be given");
   }
 }
 

@@ -56,7 +56,7 @@ std::set<std::string> namedConstants(const Value& root)
   return named;
 }
 
-/// The reason of a trip stays; what the drive kept beside it goes.
+/// The reason of a trip stays; the values that the drive kept beside it go.
 void eraseAllButCode(Value& fields)
 {
   fields.map.erase(

@@ -65,7 +65,7 @@ bool readNamedValue(const Cursor& value, const Numbering& numbering, Step& step)
   if (number != std::floor(number) || number < 0.0 || number > 4294967295.0)
   {
     value.complaints().complain({ constant->second.place, constant->second.key },
-                                "value " + util::exactText(number) + ": allowed: an integer from 0 on");
+                                "value " + util::exactText(number) + ": allowed: an integer of 0 or more");
     return true;
   }
   step.value = static_cast<std::uint32_t>(number);
@@ -187,7 +187,7 @@ void readCommands(Section& root, const Numbering& numbering, Profile& profile)
     {
       if (name == "pause" || name == "reply")
       {
-        point.complain("'" + name + "' is a word of the sequences: allowed: any other name");
+        point.complain("'" + name + "' is a keyword of the sequences: allowed: any other name");
         continue;
       }
       readPoint(name, point, numbering, profile);

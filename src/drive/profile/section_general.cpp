@@ -2,9 +2,11 @@
 // Copyright (c) 2026 the inverter_bus authors
 // Sections drive, title, manuals, protocol, numbering, stations, serial, limits, spans, frequency, timing, exceptions.
 
-#include "drive/profile/profile_builder.h"
+#include <set>
+#include <type_traits>
 
 #include "config/numerals.h"
+#include "drive/profile/profile_builder.h"
 #include "util/text.h"
 
 namespace inverter_bus
@@ -18,15 +20,17 @@ constexpr std::int64_t MAX_COMPOWAY_STATION = 99;
 constexpr double MAX_FREQUENCY = 10000.0;
 constexpr double MAX_DELAY = 60.0;
 
-std::set<unsigned> readUnsignedSet(const Cursor& cursor, std::int64_t lowest, std::int64_t highest)
+/// The values that \p read reads from the elements of a list: at least one, and none twice.
+template <typename Read>
+auto readSet(const Cursor& cursor, Read read)
 {
-  std::set<unsigned> result;
+  std::set<typename std::invoke_result_t<Read, const Cursor&>::value_type> result;
   for (const Cursor& entry : cursor.list())
   {
-    const auto value = entry.integer(lowest, highest);
-    if (value && !result.insert(static_cast<unsigned>(*value)).second)
+    const auto value = read(entry);
+    if (value && !result.insert(*value).second)
     {
-      entry.complain("stands twice in the list");
+      entry.complain("is in the list twice");
     }
   }
   if (cursor.isList() && cursor.value().list.empty())
@@ -36,18 +40,15 @@ std::set<unsigned> readUnsignedSet(const Cursor& cursor, std::int64_t lowest, st
   return result;
 }
 
+std::set<unsigned> readUnsignedSet(const Cursor& cursor, std::int64_t lowest, std::int64_t highest)
+{
+  const auto values = readSet(cursor, [&](const Cursor& entry) { return entry.integer(lowest, highest); });
+  return { values.begin(), values.end() };
+}
+
 std::set<std::string> readParities(const Cursor& cursor)
 {
-  std::set<std::string> result;
-  for (const Cursor& entry : cursor.list())
-  {
-    const auto value = entry.choice({ "none", "even", "odd" });
-    if (value && !result.insert(*value).second)
-    {
-      entry.complain("stands twice in the list");
-    }
-  }
-  return result;
+  return readSet(cursor, [](const Cursor& entry) { return entry.choice({ "none", "even", "odd" }); });
 }
 
 bool isCompoway(const Profile& profile)

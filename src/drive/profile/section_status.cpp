@@ -90,7 +90,7 @@ void checkMeaning(FieldKind kind, const std::string& field, const Item& item, co
   const auto means_no_trip = [](const auto& entry) { return entry.second == 0; };
   if (field == "faulted" && !item.values.empty() && std::none_of(item.values.begin(), item.values.end(), means_no_trip))
   {
-    cursor.complain("values name none that means 0, no trip: a value that stands in no table counts as a trip");
+    cursor.complain("no value means 0 (no trip), and a value that is in no table counts as a trip");
   }
   if (field == "fault_code" && largestRaw(item) > 0xFFFF)
   {
@@ -163,7 +163,7 @@ void readKeepAlive(Section& root, const Numbering& numbering, Profile& profile)
   map.finish();
   if (profile.keep_alive && !profile.keep_alive->unconfirmed.empty())
   {
-    cursor->complain("must be confirmed: something must be read from a drive that tells nothing else");
+    cursor->complain("must be confirmed: something must be read from a drive that reports nothing else");
   }
 }
 

@@ -94,6 +94,7 @@ TEST(BenchScanList, hasTheDriversWarningsAndItsOwnRefusals)
   EXPECT_THAT(readScanList(valueOf("rate: 5\n" + ONE), "line.yaml", PROFILES).warnings,
               ElementsAre(HasSubstr("'rate'")));
   EXPECT_THAT(refusal(ONE + "simulation: {a: {nonsense: 1}}\n"), HasSubstr("unknown key"));
+  EXPECT_THAT(refusal(ONE + "simulation: {a: {load: 5}}\n"), HasSubstr("line.yaml:2: simulation.a.load: 5 (allowed:"));
   EXPECT_THAT(refusal("scan_list: [{name: a, node: 1, drive: hitachi_wj200}]\n"), HasSubstr("can't be simulated"));
   EXPECT_THAT(refusal(ONE + "simulation: {b: {model: profile, station: 2}}\n"), HasSubstr("simulation.b.model"));
 }

@@ -252,7 +252,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{ "unknownKey", "baudrate: 9600\n" + ONE, { "~:", "'baudrate'", "9600", "baud_rate", ALLOWED } },
         Wrong{ "emptyPort", "port: ''\n" + ONE, { "'port'", "''", ALLOWED } },
-        Wrong{ "portNumber", "port: 5\n" + ONE, { "'port'", "5", "no text", ALLOWED } },
+        Wrong{ "portNumber", "port: 5\n" + ONE, { "'port'", "5", "not a text", ALLOWED } },
         Wrong{
             "unknownNetwork", "port: udp://gateway\n" + ONE, { "'port'", "udp://gateway", "unknown kind", ALLOWED } },
         Wrong{ "tunnelWithoutPort", "port: rtu+tcp://gateway\n" + ONE, { "'port'", "rtu+tcp://gateway", ALLOWED } },
@@ -314,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "negativeInterval", "interval: -0.1\n" + ONE, { "'interval'", "-0.1", "from 0 to 655.35 s" } },
         Wrong{ "longInterval", "interval: 655.36\n" + ONE, { "'interval'", "655.36", "from 0 to 655.35 s" } },
         Wrong{ "intervalText", "interval: fast\n" + ONE, { "'interval'", "'fast'", ALLOWED } },
-        Wrong{ "intervalTruth", "interval: true\n" + ONE, { "'interval'", "true", "no number", ALLOWED } },
+        Wrong{ "intervalTruth", "interval: true\n" + ONE, { "'interval'", "true", "not a number", ALLOWED } },
         Wrong{ "intervalNotANumber", "interval: .nan\n" + ONE, { "'interval'", "nan", "not finite", ALLOWED } },
         Wrong{ "intervalInfinite", "interval: .inf\n" + ONE, { "'interval'", "inf", "not finite", ALLOWED } },
         Wrong{ "noResponseTimeout", "response_timeout: 0\n" + ONE, { "'response_timeout'", "= 0", "above 0", "10 s" } },
@@ -336,7 +336,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "missingList", "port: /dev/ttyS0\n", { "~:", "'scan_list' is missing", ALLOWED } },
         Wrong{ "emptyList", "scan_list: []\n", { "'scan_list'", "is empty", ALLOWED } },
         Wrong{ "listMap", "scan_list: {belt: {node: 1}}\n", { "'scan_list'", "neither", ALLOWED } },
-        Wrong{ "listOfNumbers", "scan_list: [1, 2]\n", { "~scan_list[0]", "1", "no map", ALLOWED } },
+        Wrong{ "listOfNumbers", "scan_list: [1, 2]\n", { "~scan_list[0]", "1", "not a map", ALLOWED } },
         Wrong{ "emptyMask", "scan_list: 0\n", { "'scan_list'", "= 0", "no station", ALLOWED } },
         Wrong{ "maskOfBitZero", "scan_list: '#00000001'\n", { "'scan_list'", "#00000001", "no station", ALLOWED } },
         Wrong{
@@ -346,7 +346,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "longTextMask", "scan_list: '0x100000002'\n", { "'scan_list'", "0x100000002", ALLOWED } },
         Wrong{ "wordMask", "scan_list: all\n", { "'scan_list'", "'all'", ALLOWED } },
         Wrong{ "maskWithoutDrive", "scan_list: 2\n", { "'drive' is missing", "station 1", ALLOWED } },
-        Wrong{ "defaultsList", "defaults: [1]\n" + ONE, { "~defaults", "[1]", "no map", ALLOWED } },
+        Wrong{ "defaultsList", "defaults: [1]\n" + ONE, { "~defaults", "[1]", "not a map", ALLOWED } },
         Wrong{ "defaultsName", "defaults: {name: x}\n" + ONE, { "~defaults", "'name'", "'x'", ALLOWED } },
         Wrong{ "defaultsNode", "defaults: {node: 1}\n" + ONE, { "~defaults", "'node'", ALLOWED } },
         Wrong{ "badDefault",
@@ -435,7 +435,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "unknownOverride", entry("overrides: {no_such_key: 1}"), { BELT, "no_such_key" } },
         Wrong{ "skipText", entry("skip: torque"), { BELT, "'skip'", ALLOWED } },
         Wrong{ "skipNumber", entry("skip: [1]"), { BELT, "'skip'", ALLOWED } },
-        Wrong{ "skipUnknown", entry("skip: [torque, torqe]"), { BELT, "'skip'", "'torqe'", "no field", "dc_voltage" } },
+        Wrong{ "skipUnknown",
+               entry("skip: [torque, torqe]"),
+               { BELT, "'skip'", "'torqe'", "not a status field", "dc_voltage" } },
         Wrong{ "skipVelocity", entry("skip: [velocity]"), { BELT, "'skip'", "'velocity'", "dc_voltage" } },
         Wrong{ "skipRun", entry("skip: [run_seen]"), { BELT, "'skip'", "'run_seen'", "can't do without", "torque" } },
         Wrong{ "skipFault", entry("skip: [faulted]"), { BELT, "'skip'", "'faulted'", "can't do without", "torque" } },
@@ -477,7 +479,7 @@ TEST(ConfigurationTest, skippedFieldsReachTheDrive)
 
 TEST(ConfigurationTest, aFileWithoutAMapIsRefused)
 {
-  EXPECT_THAT(refusal("- 1\n"), AllOf(HasSubstr("~"), HasSubstr("no map"), HasSubstr(ALLOWED)));
+  EXPECT_THAT(refusal("- 1\n"), AllOf(HasSubstr("~"), HasSubstr("not a map"), HasSubstr(ALLOWED)));
   EXPECT_THAT(refusal(""), AllOf(HasSubstr("is empty"), HasSubstr(ALLOWED)));
 }
 
@@ -528,6 +530,13 @@ TEST(ConfigurationTest, aMessageIsOneLineOfPrintableText)
 TEST(ConfigurationTest, aMissingFileIsNamed)
 {
   EXPECT_THROW(readYamlFile("/nonexistent/scan_list.yaml"), drive::ConfigurationError);
+}
+
+TEST(ConfigurationTest, anUnknownDriveIsNamedOnce)
+{
+  const std::string message = refusal(driven("omron_mx3"));
+  EXPECT_THAT(message, StartsWith(BELT + ": key 'drive': value 'omron_mx3': " + ALLOWED));
+  EXPECT_EQ(message.find(BELT), message.rfind(BELT));
 }
 
 TEST(ConfigurationTest, aMalformedProfileIsReportedWithFileAndLine)
@@ -637,9 +646,9 @@ TEST(ConfigurationTest, whatResemblesAKeyAtAnyLevelIsRefused)
                                                                 { "scan-list", "'scan_list'" },
                                                                 { "velocity_limit", "'" },
                                                                 { "command_timeout",
-                                                                  "belongs into scan_list or defaults" },
-                                                                { "name", "belongs into scan_list or defaults" },
-                                                                { "turnaround", "belongs into simulation" },
+                                                                  "belongs in scan_list or defaults" },
+                                                                { "name", "belongs in scan_list or defaults" },
+                                                                { "turnaround", "belongs in simulation" },
                                                                 { "slow_interval", "later version" },
                                                                 { "configure_map", "later version" },
                                                                 { "in_service", "later version" },

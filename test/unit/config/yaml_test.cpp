@@ -135,7 +135,7 @@ TEST(YamlDocument, whatIsNoYamlHasALine)
   EXPECT_THAT(mistakes(""), HasSubstr("is empty"));
   EXPECT_THAT(mistakes("# nothing but this\n"), HasSubstr("is empty"));
   EXPECT_THAT(mistakes("a: b\x01\n"), AllOf(HasSubstr("1 "), HasSubstr("control character")));
-  EXPECT_THAT(mistakes("a: 1\nb: \xFF\n"), AllOf(HasSubstr("2 "), HasSubstr("no UTF-8")));
+  EXPECT_THAT(mistakes("a: 1\nb: \xFF\n"), AllOf(HasSubstr("2 "), HasSubstr("not UTF-8")));
 }
 
 TEST(YamlDocument, tabsStandInTextsAndCommentsOnly)
@@ -157,8 +157,8 @@ TEST(YamlDocument, tabsStandInTextsAndCommentsOnly)
 
 TEST(YamlDocument, quotesEnd)
 {
-  EXPECT_THAT(mistakes("a: 1\nb: 'x\nc: 2\n"), AllOf(HasSubstr("2 "), HasSubstr("don't end")));
-  EXPECT_THAT(mistakes("a: \"x\\\"\n"), HasSubstr("don't end"));
+  EXPECT_THAT(mistakes("a: 1\nb: 'x\nc: 2\n"), AllOf(HasSubstr("2 "), HasSubstr("never closed")));
+  EXPECT_THAT(mistakes("a: \"x\\\"\n"), HasSubstr("never closed"));
   EXPECT_EQ("", mistakes("a: it's\n"));
   EXPECT_EQ("", mistakes("a: x\n  'y\n  \"z\nb: 1\n"));
   EXPECT_EQ("", mistakes("# it's \"\na: 1 # '\n"));

@@ -36,7 +36,8 @@ private:
   std::uint16_t judgeGroup(TimePoint now, const VelocityCommand& command, std::vector<JudgedVelocity>& judged,
                            bool& repeat);
   double factorOf(const VelocityCommand& command) const;
-  std::uint16_t judgeOne(TimePoint now, std::size_t index, const Publisher& publisher, JudgedVelocity& judged) const;
+  std::uint16_t judgeOne(TimePoint now, const Inverter& inverter, const Publisher& publisher,
+                         const Interlock::Verdict& verdict, JudgedVelocity& judged) const;
   void apply(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged, bool refused);
   bool applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
   bool applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);

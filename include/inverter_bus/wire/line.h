@@ -138,6 +138,8 @@ public:
   bool mayAsk(const Request& request) const;
   /// Earliest time from which mayAsk() is true without further traffic.
   TimePoint mayAskAt(const Request& request) const;
+  /// The same for somebody who decides at \p now, whatever the clock shows meanwhile.
+  TimePoint mayAskAt(const Request& request, TimePoint now) const;
 
   /// Sends, after the silence that Request::quiet_before asks for, and waits for the answer; closes the port if it is
   /// lost. Call settle() before. Does not consult mayAsk(): a stop is exempt from it. \p turnaround_after silence to
@@ -188,7 +190,6 @@ public:
 
 private:
   struct Waiting;
-  TimePoint mayAskAt(const Request& request, TimePoint now) const;
   bool settle(Duration quiet);
   bool send(const Bytes& frame, Reply& reply);
   Waiting startWaiting(const Request& request, TimePoint sent_at);

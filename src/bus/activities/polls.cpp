@@ -20,14 +20,14 @@ Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops,
 {
 }
 
-InFlight Polls::compose(TimePoint now, const Pick& pick)
+InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);
-  while (!resync && !bus_.line.mayAsk(current.request) && inverter.refresh.skipSlow())
+  while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {
     // What decides over safety does not wait a second for a temperature.
     block = inverter.refresh.next(now);
@@ -41,19 +41,19 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
     const wire::Request both =
         words.empty() ? current.request : inverter.drive.writeAndRead(inverter.config.node, words, block);
     // After a lost 17H that shape is barred for a while, the plain read is not.
-    current.request = bus_.line.mayAsk(both) ? both : current.request;
+    current.request = line.mayAsk(both, now) ? both : current.request;
   }
   std::optional<drive::ReadBlock> variant = block;
-  while (!resync && variant && !bus_.line.mayAsk(current.request))
+  while (!resync && variant && !line.mayAsk(current.request, now))
   {
     // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
     variant = inverter.drive.variantOf(*variant);
     current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
   }
   const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
-  if (!resync && !bus_.line.mayAsk(current.request) && serve_by && *serve_by <= now)
+  if (!resync && !line.mayAsk(current.request, now) && serve_by && *serve_by <= now)
   {
-    const auto spare = guard_.spareRead(inverter);
+    const auto spare = guard_.spareRead(now, inverter, line);
     current.pick.what = spare ? Pick::What::KeepAlive : current.pick.what;
     current.request = spare.value_or(current.request);
   }
@@ -68,7 +68,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   const bool says_nothing = bus_.behind_another && !isAnswered(reply);
   if (!current.resync && !says_nothing)
   {
-    inverter.liveness.noteRead(bus_.line.cost(current.request, Duration{ 0 }), reply);
+    inverter.liveness.noteRead(current.cost, reply);
   }
   if (isAnswered(reply))
   {

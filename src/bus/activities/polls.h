@@ -18,7 +18,7 @@ class Polls
 public:
   Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences);
 
-  InFlight compose(TimePoint now, const Pick& pick);
+  InFlight compose(TimePoint now, const Pick& pick, const LineView& line);
   void ended(const InFlight& current, const wire::Reply& reply);
   /// The end of a read whose answer is not used.
   void keptAlive(const InFlight& current, const wire::Reply& reply);

@@ -27,7 +27,9 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   {
     return;
   }
-  if (lock)
+  // A request in a gateway may set RUN after the first frame of the stop: locked until the second one is confirmed (contract,
+  // 8.8).
+  if (lock || bus_.gateway.motionUntil(now, inverter.index))
   {
     inverter.stop.hold();
     inverter.interlock.stopRequested();
@@ -178,7 +180,7 @@ void Stops::replaceZeros(TimePoint now)
     if (target && target->zero && bus_.scheduler.velocityWaits(inverter->index) &&
         traffic_.zeroNeedsStop(now, *inverter))
     {
-      request(now, *inverter, StopMode::Decelerate, bus_.gateway.motionUntil(now, inverter->index).has_value(), "");
+      request(now, *inverter, StopMode::Decelerate, false, "");
     }
   }
 }

@@ -16,6 +16,7 @@ namespace
 // Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
 constexpr double RETURN_S = 3.0;
 constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
+constexpr double STOP_SLACK_CHARACTERS = 64.0;
 }  // namespace
 
 namespace
@@ -212,6 +213,8 @@ Budget::Figures Budget::figures() const
   figures.worst_stop = worstStop();
   figures.longest_exchange = longestExchange();
   figures.deadline_margin = deadlineMargin();
+  figures.longest_pause = line_.patience();
+  figures.stop_slack = line_.timing().characters(STOP_SLACK_CHARACTERS);
   figures.findings = findings();
   return figures;
 }

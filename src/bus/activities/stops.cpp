@@ -22,10 +22,15 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   inverter.movement.drop();
   inverter.movement.forgetWords();
   bus_.scheduler.eraseVelocity(inverter.index);
+  const bool news = !inverter.stop.pending();
   inverter.stop.request(now, mode);
   if (!inverter.stop.pending())
   {
     return;
+  }
+  if (news)
+  {
+    bus_.outbox.event(inverter.config.name + ": a stop is accepted" + (lock ? ", which locks" : ""));
   }
   if (lock)
   {
@@ -137,6 +142,7 @@ void Stops::confirmed(TimePoint now, Inverter& inverter)
   inverter.cameToRest(now);
   inverter.settings.released();
   inverter.interlock.stopConfirmed(now);
+  bus_.outbox.event(inverter.config.name + ": the stop is confirmed");
   finishCalls(now);
 }
 

@@ -31,7 +31,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , interlock(config.command_timeout)
   , movement(drive, config)
   , stop(drive, config.node)
-  , refresh(drive, config.node)
+  , refresh(drive)
   , settings(drive, config.node)
   , loopback(config.modbus_tcp)
   , link(offline_after)
@@ -145,7 +145,7 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
 std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeBlockWrites()
 {
   const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
-                       !refresh.fresh().running.value_or(true);
+                       !refresh.fresh().monitor.running.value_or(true);
   const bool may_write = at_rest && settings.identity() == Identity::Right;
   return block_transfer.takeWrites(may_write ? settings.blockSlots() : std::nullopt);
 }
@@ -166,7 +166,7 @@ void Inverter::noteExchange(const wire::Reply& reply)
     return;
   }
   // A short power cut may be behind it.
-  refresh.suspectRestart();
+  refresh.slow().suspectRestart();
   if (drive.wears("frequency"))
   {
     // After one the drive writes set-points to its EEPROM again.
@@ -181,11 +181,11 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
     return;
   }
   link.dataRead();
-  if (!refresh.block() && refresh.takeBlockRefusal())
+  if (!refresh.chosen().read() && refresh.takeBlockRefusal())
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
-  evidence.statusRead(more ? refresh.words() : refresh.fresh(), reply, movement);
+  evidence.statusRead(more ? refresh.words().monitor : refresh.fresh().monitor, reply, movement);
 }
 
 void Inverter::parameterWritten(const std::string& name)
@@ -209,7 +209,7 @@ bool Inverter::mayRepeatWords(TimePoint now) const
 
 bool Inverter::mayRun() const
 {
-  const drive::Monitor& monitor = refresh.fresh();
+  const drive::Monitor& monitor = refresh.fresh().monitor;
   return movement.runPossible() || monitor.operation.value_or(false) || monitor.running.value_or(false) ||
          monitor.output_frequency.value_or(0.0) > 0.0;
 }
@@ -230,7 +230,7 @@ Judgement Inverter::statusComplete(TimePoint now)
   liveness.complete(now);
   record.restart();
   interlock.online(now);
-  Judgement judgement = compare(now, refresh.fresh(), refresh.freshSentAt(), true);
+  Judgement judgement = compare(now, refresh.fresh(), true);
   if (evidence.takeSourceDue(now, movement))
   {
     settings.commanded();
@@ -240,28 +240,28 @@ Judgement Inverter::statusComplete(TimePoint now)
 
 Judgement Inverter::wordsRead(TimePoint now)
 {
-  return compare(now, refresh.words(), refresh.wordsSentAt(), false);
+  return compare(now, refresh.words(), false);
 }
 
 /// What the drive does with what it was told, and what follows for the parts of this inverter.
-Judgement Inverter::compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete)
+Judgement Inverter::compare(TimePoint now, const StatusWords& words, bool complete)
 {
   const MotionVerdict verdict =
-      motion.judge({ words, sent_at, now, complete, movement, stop.pending(), interlock.isFaulted() });
+      motion.judge({ words.monitor, words.sent_at, now, complete, movement, stop.pending(), interlock.isFaulted() });
   if (verdict.faulted)
   {
     interlock.faulted(*verdict.faulted);
   }
   if (verdict.came_to_rest)
   {
-    cameToRest(sent_at);
+    cameToRest(words.sent_at);
   }
   if (verdict.told_after_turn)
   {
     movement.seenRunning();
   }
   Judgement judgement = verdict.judgement;
-  const std::string restart = noteRestart(words, sent_at);
+  const std::string restart = noteRestart(words.monitor, words.sent_at);
   judgement.stop_reason = restart.empty() ? judgement.stop_reason : restart;
   return judgement;
 }
@@ -288,7 +288,7 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   if (restart == Restart::PerhapsBeforeRun)
   {
     settings.connectAgain();
-    refresh.askForRun();
+    refresh.slow().askForRun();
     return "";
   }
   settings.restart();
@@ -316,7 +316,7 @@ Obstacles Inverter::obstacles() const
 InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 {
   InverterView view;
-  const drive::Monitor& monitor = refresh.fresh();
+  const drive::Monitor& monitor = refresh.fresh().monitor;
   view.offline = link.silent();
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = link.known() && tells && !movement.runPossible() && !movement.target() &&
@@ -327,6 +327,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_written = stop.pending() && stop.written();
   view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = pauses.statusNotBefore();
+  view.connect_due = connectDue(now);
   const bool refused = settings.pauseBeforeNext() > Duration{ 0 };
   view.background = link.known() && !link.offline() && settings.pending() && pauses.settingsAllowed(now, refused);
   view.serve_by = serveBy(deadline_margin);

@@ -124,7 +124,7 @@ public:
 
 private:
   void forgetDrive(bool after_silence);
-  Judgement compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete);
+  Judgement compare(TimePoint now, const StatusWords& words, bool complete);
   std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);
 };
 }  // namespace bus

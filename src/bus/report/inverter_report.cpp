@@ -93,7 +93,7 @@ std::vector<Finding> errorsOf(const Inverter& inverter, TimePoint now)
   }
   if (inverter.interlock.isFaulted())
   {
-    const drive::Monitor& told = inverter.refresh.fresh();
+    const drive::Monitor& told = inverter.refresh.fresh().monitor;
     const std::uint16_t code = told.fault_code.value_or(0);
     const std::string why =
         told.unknown_trip ? inverter.drive.tripText(told) : std::to_string(code) + " " + inverter.drive.faultText(code);
@@ -123,7 +123,7 @@ std::vector<std::string> profileWarnings(const Inverter& inverter)
     warnings.push_back("unconfirmed in the profile: " + inverter.drive.unconfirmedText());
   }
   const auto slots = profile.block ? inverter.settings.blockSlots() : std::nullopt;
-  if (slots && !inverter.refresh.block())
+  if (slots && !inverter.refresh.chosen().read())
   {
     warnings.push_back(inverter.block_transfer.whyNot(*slots));
   }
@@ -144,8 +144,8 @@ InverterStatus statusOf(const Inverter& inverter, TimePoint now)
   const bool answered_lately = last_answer && now - *last_answer < seconds(LATELY_S);
   status.index = inverter.index;
   status.model = inverter.settings.model();
-  status.stamp = inverter.refresh.stamp();
-  status.has_stamp = inverter.refresh.hasStamp();
+  status.stamp = inverter.refresh.stamp().value_or(TimePoint());
+  status.has_stamp = inverter.refresh.stamp().has_value();
   status.communication_error = inverter.link.offline();
   status.refuses = inverter.link.offline() && inverter.liveness.refusesForTheMoment() && answered_lately;
   if (!status.communication_error)
@@ -205,7 +205,7 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   values.emplace_back("drive", profile.name);
   values.emplace_back("model", profile.title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? util::durationText(now - refresh.stamp()) : std::string("no status yet"));
+                      refresh.stamp() ? util::durationText(now - *refresh.stamp()) : std::string("no status yet"));
   values.emplace_back("slowest reply", util::durationText(inverter.link.slowestReply()));
   values.emplace_back("returns", std::to_string(inverter.link.returns()));
   values.emplace_back("locked", inverter.interlock.locked(now) ? "yes" : "no");
@@ -217,9 +217,9 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   if (profile.block)
   {
     values.emplace_back("block read",
-                        refresh.block() ? "in use: " + util::joined(inverter.config.block_read) : "not used");
+                        refresh.chosen().read() ? "in use: " + util::joined(inverter.config.block_read) : "not used");
   }
-  for (const auto& value : refresh.chosenValues())
+  for (const auto& value : refresh.chosen().values())
   {
     values.push_back(value);
   }

@@ -171,7 +171,7 @@ TEST_F(Mx2Inverter, goesOfflineAfterSoManyLostReadsAndForgetsWhatItHasTold)
   EXPECT_TRUE(inverter_.movement.runPossible()) << "nobody has seen it stop";
   EXPECT_FALSE(inverter_.services.resetting());
   EXPECT_FALSE(inverter_.inSetup());
-  EXPECT_FALSE(inverter_.refresh.fresh().run_seen);
+  EXPECT_FALSE(inverter_.refresh.fresh().monitor.run_seen);
 }
 
 TEST_F(Mx2Inverter, expectedSilenceDoesNotTakeItOffline)

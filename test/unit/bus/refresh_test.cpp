@@ -6,15 +6,12 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drive/monitor_fields.h"
 #include "support/bus_fixture.h"
 
 namespace inverter_bus
@@ -87,7 +84,7 @@ protected:
   }
 
   const drive::Drive mx2_ = shipped("omron_mx2");
-  Refresh refresh_{ mx2_, 1 };
+  Refresh refresh_{ mx2_ };
   int time_ = 0;
   bool more_ = false;
   /// Replies by request.
@@ -204,10 +201,9 @@ TEST_F(Mx2Refresh, slowValuesLeaveTheStatusAfterOneSecond)
 
 TEST_F(Mx2Refresh, stampIsTheArrivalOfTheLastFastReply)
 {
-  EXPECT_FALSE(refresh_.hasStamp());
+  EXPECT_FALSE(refresh_.stamp());
   time_ = 500;
   refresh();
-  EXPECT_TRUE(refresh_.hasStamp());
   EXPECT_EQ(refresh_.stamp(), at(520));
 }
 
@@ -217,7 +213,7 @@ TEST_F(Mx2Refresh, runWordsAreAsOldAsTheirRequest)
   time_ = 500;
   refresh();
   // The warning goes before the coils.
-  EXPECT_EQ(refresh_.freshSentAt(), at(510));
+  EXPECT_EQ(refresh_.fresh().sent_at, at(510));
 }
 
 TEST_F(Mx2Refresh, isCompleteOnceAfterTheLastRead)
@@ -291,8 +287,8 @@ TEST_F(Mx2Refresh, reasonOfATripIsReadInTheFirstRefreshThatShowsIt)
   const Frames frames = refresh();
   EXPECT_EQ(frames.back(), FAULT);
   EXPECT_TRUE(refresh_.takeComplete());
-  EXPECT_EQ(refresh_.fresh().faulted, true);
-  EXPECT_EQ(refresh_.fresh().fault_code, 12);
+  EXPECT_EQ(refresh_.fresh().monitor.faulted, true);
+  EXPECT_EQ(refresh_.fresh().monitor.fault_code, 12);
   EXPECT_EQ(monitor().fault_code, 12);
 }
 
@@ -410,52 +406,6 @@ TEST_F(Mx2Refresh, driveThatRefusesEverythingIsStillAskedForSomething)
     refresh_.refused(exception(request[4] == '1' ? 0x81 : 0x83, 0x02, at(time_)));
   }
   EXPECT_FALSE(monitor().output_frequency);
-}
-
-TEST(Refresh, fastAndSlowReadsOfTheMx2AreKnownForCosts)
-{
-  const drive::Drive mx2 = shipped("omron_mx2");
-  const Refresh refresh(mx2, 1);
-  EXPECT_EQ(refresh.fastBlocks().size(), 2U);
-  EXPECT_EQ(refresh.slowBlocks().size(), 3U);
-}
-
-TEST(Refresh, singleValueCannotBeSplit)
-{
-  const drive::Drive mx2 = shipped("omron_mx2");
-  ASSERT_EQ(mx2.faultBlocks().size(), 1U);
-  EXPECT_EQ(splitBlock(mx2, mx2.faultBlocks().front()).size(), 1U);
-}
-
-TEST(Refresh, mergingKeepsWhatIsKnownAndTakesWhatIsNew)
-{
-  drive::Monitor to;
-  to.run_seen = true;
-  to.output_current = 1.0;
-  drive::Monitor from;
-  from.output_current = 2.0;
-  from.torque = 3.0;
-  mergeMonitor(from, to);
-  EXPECT_EQ(to.run_seen, true);
-  EXPECT_DOUBLE_EQ(to.output_current.value(), 2.0);
-  EXPECT_DOUBLE_EQ(to.torque.value(), 3.0);
-}
-
-TEST(MergeMonitor, forgetsNoField)
-{
-  // That as many fields are listed as there are is asserted where the list is; none may stand for another.
-  const drive::Monitor empty;
-  const auto fields = drive::monitorFields(empty);
-  const auto places = std::apply(
-      [](const auto&... field) { return std::set<const void*>{ static_cast<const void*>(&field)... }; }, fields);
-  EXPECT_EQ(places.size(), std::tuple_size<decltype(fields)>::value);
-  drive::Monitor from;
-  std::apply([](auto&... field) { ((field = 1), ...); }, drive::monitorFields(from));
-  drive::Monitor to;
-  mergeMonitor(from, to);
-  const auto merged = drive::monitorFields(to);
-  std::apply([](const auto&... field) { EXPECT_TRUE((field && ...)); }, merged);
-  EXPECT_EQ(merged, drive::monitorFields(from));
 }
 }  // namespace
 }  // namespace bus

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_STATUS_READS_H
+#define INVERTER_BUS_BUS_STATUS_READS_H
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "inverter_bus/bus/types.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// One read of the status and what it brought last.
+struct StatusRead
+{
+  enum class Kind
+  {
+    /// Read in every refresh.
+    Fast,
+    /// Read in each refresh that shows a trip.
+    Fault,
+    /// Takes turns with others of its kind.
+    Slow
+  };
+  drive::ReadBlock block;
+  Kind kind = Kind::Fast;
+  /// Not asked for before this time: the drive refuses it, or it was not to be had.
+  TimePoint left_out_until;
+  /// It was answered, \ref last at last.
+  bool ever = false;
+  TimePoint last;
+  drive::Monitor values;
+
+  bool brings(const char* field) const;
+  /// Whether the motor runs stands in it: without such a word there is no status (contract, 8.15).
+  bool tellsRun() const;
+};
+
+/// The reads that make the status of one inverter, in the order in which they go: slow ones, those of a trip, fast ones, so
+/// that the stamp belongs to the values that matter. Pure. Not thread safe; the bus guards it.
+class StatusReads
+{
+public:
+  /// \p drive must outlive it.
+  explicit StatusReads(const drive::Drive& drive);
+
+  /// All anew and in full: \p chosen, where the drive has such a read in use, and what it doesn't bring.
+  void build(const std::optional<drive::ReadBlock>& chosen);
+  /// The drive refuses this read: two smaller ones take its place. False: it brings one value only, and stays.
+  bool split(std::size_t index);
+
+  std::size_t size() const;
+  StatusRead& operator[](std::size_t index);
+  const StatusRead& operator[](std::size_t index) const;
+  /// Those of a kind that may be asked for at \p now, in order.
+  std::vector<std::size_t> open(StatusRead::Kind kind, TimePoint now) const;
+  /// Any of them tells whether the motor runs.
+  bool tellRun() const;
+  /// The same of those beside \p index that may be asked for at \p now.
+  bool othersTellRun(std::size_t index, TimePoint now) const;
+  /// For costs.
+  std::vector<drive::ReadBlock> blocks(StatusRead::Kind kind) const;
+  /// Adds the slow values that are no older than \p age to \p monitor.
+  void addSlowValues(TimePoint now, Duration age, drive::Monitor& monitor) const;
+
+private:
+  void add(const std::vector<drive::ReadBlock>& blocks, StatusRead::Kind kind);
+
+  const drive::Drive& drive_;
+  std::vector<StatusRead> reads_;
+};
+
+/// Splits a read in two at the widest gap between its values; a block of one value stays as it is.
+std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive::ReadBlock& block);
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_STATUS_READS_H

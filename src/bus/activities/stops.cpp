@@ -19,10 +19,10 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   {
     bus_.outbox.log(Level::Warn, inverter.config.name + ": stopping: " + reason);
   }
+  const bool news = !inverter.stop.pending();
   inverter.movement.drop();
   inverter.movement.forgetWords();
   bus_.scheduler.eraseVelocity(inverter.index);
-  const bool news = !inverter.stop.pending();
   inverter.stop.request(now, mode);
   if (!inverter.stop.pending())
   {

@@ -16,23 +16,25 @@ const char* textOf(const InFlight& current)
   {
     return "a loop-back";
   }
-  switch (current.purpose)
+  switch (current.pick.what)
   {
-    case Purpose::StopFrame:
-    case Purpose::Broadcast:
+    case Pick::What::Stop:
+    case Pick::What::Broadcast:
       return "a stop";
-    case Purpose::Velocity:
+    case Pick::What::Velocity:
       return "a velocity";
-    case Purpose::Job:
+    case Pick::What::Service:
       return "a service";
-    case Purpose::Setting:
+    case Pick::What::Connect:
+    case Pick::What::Setting:
       return "a setting's read or write";
-    case Purpose::Release:
+    case Pick::What::Release:
       return "the release";
-    case Purpose::Probe:
+    case Pick::What::Probe:
       return "a probe";
-    case Purpose::Refresh:
-    case Purpose::KeepAlive:
+    case Pick::What::Refresh:
+    case Pick::What::KeepAlive:
+    case Pick::What::Nothing:
       break;
   }
   return "a status read";
@@ -92,7 +94,7 @@ void TraceNotes::called(const std::string& service, std::optional<std::size_t> i
 void TraceNotes::sent(const InFlight& current)
 {
   wire::Bytes& lost = lost_[current.inverter];
-  if (!lost.empty() && current.purpose != Purpose::Broadcast && lost == current.request.pdu)
+  if (!lost.empty() && current.pick.what != Pick::What::Broadcast && lost == current.request.pdu)
   {
     bus_.outbox.event(nameOf(current.inverter) + ": " + textOf(current) + " is tried again");
   }
@@ -100,14 +102,14 @@ void TraceNotes::sent(const InFlight& current)
 
 void TraceNotes::ended(const InFlight& current, const wire::Reply& reply)
 {
-  if (current.purpose == Purpose::Broadcast)
+  if (current.pick.what == Pick::What::Broadcast)
   {
     return;
   }
   // A loop-back comes between a lost request and its repeat.
   wire::Bytes& lost = lost_[current.inverter];
   lost = current.resync ? lost : wire::Bytes();
-  if (isAnswered(reply) || !current.request.expects_reply || current.purpose == Purpose::Probe)
+  if (isAnswered(reply) || !current.request.expects_reply || current.pick.what == Pick::What::Probe)
   {
     return;
   }

@@ -30,6 +30,7 @@ Coordinator::~Coordinator() = default;
 
 bool Coordinator::tick(TimePoint now)
 {
+  bus_.outbox.at(now);
   noteRunning(now);
   activities_.stops.checkWatchdogs(now);
   const bool lost_one = activities_.absences.watchStatuses(now);
@@ -161,6 +162,8 @@ void Coordinator::sent(TimePoint now)
     return;
   }
   const InFlight& current = *in_flight_;
+  bus_.outbox.at(now);
+  activities_.trace.sent(current);
   bus_.last_node = current.request.station;
   const bool wears = activities_.services.wears(current) || activities_.velocities.wears(current);
   if (!current.resync && current.pick.what != Pick::What::Broadcast && wears)
@@ -177,6 +180,7 @@ void Coordinator::sent(TimePoint now)
 
 void Coordinator::done(const wire::Reply& reply)
 {
+  bus_.outbox.at(reply.finished_at);
   noteRunning(reply.finished_at);
   if (!in_flight_)
   {
@@ -184,6 +188,7 @@ void Coordinator::done(const wire::Reply& reply)
   }
   const InFlight current = *in_flight_;
   in_flight_.reset();
+  activities_.trace.ended(current, reply);
   // Before the end of the connection is booked: what was under way then may still be carried out.
   activities_.traffic.note(current, reply);
   if (reply.outcome != wire::Outcome::PortLost)

@@ -29,10 +29,21 @@ const Keys& laterKeys()
 /// Of the map `simulation`, which the simulated bus reads.
 const Keys& simulationKeys()
 {
-  static const Keys KEYS{ "model",          "station",       "turnaround",      "start_up_time",
-                          "load",           "reset_silence", "eeprom_time",     "restart_after_timeout",
-                          "reverse_word",   "monitor_base",  "operation_codes", "self_clearing_coils",
-                          "area_1_readable" };
+  static const Keys KEYS{ "model",
+                          "station",
+                          "turnaround",
+                          "start_up_time",
+                          "load",
+                          "reset_silence",
+                          "eeprom_time",
+                          "restart_after_timeout",
+                          "reverse_word",
+                          "monitor_base",
+                          "operation_codes",
+                          "self_clearing_coils",
+                          "area_1_readable",
+                          "mapped_reads_in_blocks",
+                          "reserved_readable" };
   return KEYS;
 }
 

@@ -73,6 +73,8 @@ const std::map<std::string, Reading>& readings()
     { "load", numberInto(&DriveOptions::load, 3.0) },
     { "restart_after_timeout", flagInto(&DriveOptions::restart_after_timeout) },
     { "self_clearing_coils", flagInto(&DriveOptions::self_clearing_coils) },
+    { "mapped_reads_in_blocks", flagInto(&DriveOptions::mapped_reads_in_blocks) },
+    { "reserved_readable", flagInto(&DriveOptions::reserved_readable) },
     { "area_1_readable", flagInto(&DriveOptions::area_1_readable) },
   };
   return READINGS;

@@ -35,6 +35,7 @@ BusState::BusState(const Configuration& the_configuration, const wire::Line& the
   , line(the_line)
   , budget(Budget(configuration, line).figures())
   , scheduler(schedulerSettings(configuration.bus))
+  , slow_share(budget.slow)
   , outbox(configuration.bus.inverters.size())
   , refusals(configuration.bus.inverters.size())
   , gateway({ configuration.bus.modbus_tcp, seconds(configuration.bus.gateway_timeout),

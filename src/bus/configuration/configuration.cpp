@@ -119,6 +119,7 @@ BusConfig readBus(const Section& section)
   readPort(section, bus);
   bus.protocol = readProtocol(section, bus);
   bus.interval = section.number("interval", bus.interval, Range{ 0.0, 655.35, false, "s" });
+  bus.slow_interval = section.number("slow_interval", bus.slow_interval, Range{ 0.0, 3600.0, false, "s" });
   bus.response_timeout = section.number("response_timeout", bus.response_timeout, Range{ 0.0, 10.0, true, "s" });
   bus.gateway_timeout = section.number("gateway_timeout", bus.gateway_timeout, Range{ 0.0, 60.0, true, "s" });
   bus.limit = readLimit(section, bus.limit);

@@ -135,15 +135,19 @@ std::optional<InFlight> Coordinator::compose(TimePoint now, const Pick& pick)
   {
     case Pick::What::Stop:
       return activities_.stops.compose(pick, pick.probe ? activities_.probes.timeout(inverter) : Duration{ 0 });
-    case Pick::What::Command:
-      return activities_.services.has(pick.command) ? activities_.services.compose(now, pick)
-                                                    : activities_.velocities.compose(now, pick);
+    case Pick::What::Velocity:
+      return activities_.velocities.compose(now, pick);
+    case Pick::What::Service:
+      return activities_.services.compose(now, pick);
     case Pick::What::Refresh:
-      return inverter.connectDue(now) ? activities_.settings.compose(pick) : activities_.polls.compose(now, pick);
+      return activities_.polls.compose(now, pick);
+    case Pick::What::Connect:
+    case Pick::What::Setting:
+      return activities_.settings.compose(pick);
     case Pick::What::Probe:
       return activities_.probes.compose(pick);
-    case Pick::What::Background:
-      return bus_.shutting_down ? activities_.shutdown.composeRelease(pick) : activities_.settings.compose(pick);
+    case Pick::What::Release:
+      return activities_.shutdown.composeRelease(pick);
     default:
       return std::nullopt;
   }
@@ -158,7 +162,7 @@ void Coordinator::sent(TimePoint now)
   const InFlight& current = *in_flight_;
   bus_.last_node = current.request.station;
   const bool wears = activities_.services.wears(current) || activities_.velocities.wears(current);
-  if (!current.resync && current.purpose != Purpose::Broadcast && wears)
+  if (!current.resync && current.pick.what != Pick::What::Broadcast && wears)
   {
     // What reaches the drive's EEPROM wears it, answered or not, and each repeat again.
     bus_.inverters[current.inverter]->services.eepromWritten();
@@ -207,14 +211,14 @@ void Coordinator::ended(const InFlight& current, const wire::Reply& reply)
     activities_.port.works();
   }
   bus_.last_error = reply.outcome == wire::Outcome::Ok ? std::uint16_t{ 0 } : reply.error_id;
-  if (current.purpose == Purpose::Broadcast)
+  if (current.pick.what == Pick::What::Broadcast)
   {
     bus_.meter.exchange(reply.sent_at, reply.finished_at, Duration{ 0 });
     return;
   }
   noteReply(current, reply);
   // A loop-back that is refused has put nothing into step: to a stop that is a failed attempt.
-  const bool refused_stop = current.purpose == Purpose::StopFrame && reply.outcome == wire::Outcome::Exception;
+  const bool refused_stop = current.pick.what == Pick::What::Stop && reply.outcome == wire::Outcome::Exception;
   if (current.resync && isAnswered(reply) && !refused_stop)
   {
     // The line is in step again: the real request keeps its turn.
@@ -236,7 +240,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
     activities_.port.noteConnection(reply.finished_at, current, reply);
   }
   inverter.link.noteCost(current.pick.probe, reply.outcome, activities_.turns.price(current, reply));
-  const bool read_of_refresh = current.purpose == Purpose::Refresh && !current.resync;
+  const bool read_of_refresh = current.pick.what == Pick::What::Refresh && !current.resync;
   if (current.request.expects_reply && !isAnswered(reply) && !bus_.behind_another && !read_of_refresh)
   {
     inverter.liveness.missed(reply.error_id);
@@ -260,24 +264,25 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
 void Coordinator::endedBy(const InFlight& current, const wire::Reply& reply)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
-  switch (current.purpose)
+  switch (current.pick.what)
   {
-    case Purpose::StopFrame:
+    case Pick::What::Stop:
       activities_.absences.take(activities_.stops.ended(current, reply), reply, inverter);
       break;
-    case Purpose::Velocity:
+    case Pick::What::Velocity:
       activities_.velocities.ended(current, reply);
       break;
-    case Purpose::Job:
+    case Pick::What::Service:
       activities_.absences.take(activities_.services.ended(current, reply), reply, inverter);
       break;
-    case Purpose::Refresh:
+    case Pick::What::Refresh:
       activities_.polls.ended(current, reply);
       break;
-    case Purpose::KeepAlive:
+    case Pick::What::KeepAlive:
       activities_.polls.keptAlive(current, reply);
       break;
-    case Purpose::Setting:
+    case Pick::What::Connect:
+    case Pick::What::Setting:
       activities_.settings.ended(current, reply);
       break;
     default:

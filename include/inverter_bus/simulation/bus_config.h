@@ -67,19 +67,19 @@ struct SerialOptions
 ///
 /// `model` is needed where `drive` is not one of driveModels(); a path as `drive` is played as "profile". Serial settings and
 /// `station` are what the drive is really set to, right or wrong. A name that is not in the scan list is a further drive.
-/// @throws ConfigError
+/// \throws ConfigError, in one line: place, value, what is allowed
 BusConfig busConfigFromParameters(const config::Value& parameters, const SerialOptions& drives_serial = {});
 
-/// The same from the text of a file. @throws ConfigError, also for what is no YAML
+/// The same from the text of a file. \throws ConfigError, also for what is no YAML
 BusConfig busConfigFromText(const std::string& yaml);
 
 /// Names that `drive` and `model` know.
 std::vector<std::string> driveModels();
 
-/// What the drive's bus speaks. @throws ConfigError for an unknown model
+/// What the drive's bus speaks. \throws ConfigError for an unknown model
 Protocol protocolOf(const DriveConfig& config);
 
-/// @throws ConfigError for an unknown model, and for what the drive itself refuses
+/// A drive as \p config describes it. \throws ConfigError for an unknown model, and for what the drive itself refuses
 std::unique_ptr<SimulatedDrive> makeDrive(const DriveConfig& config);
 }  // namespace simulation
 }  // namespace inverter_bus

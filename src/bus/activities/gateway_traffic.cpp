@@ -16,22 +16,21 @@ GatewayTraffic::GatewayTraffic(BusState& bus, const Turns& turns) : bus_(bus), t
 
 GatewayRisk GatewayTraffic::riskOf(const InFlight& current)
 {
-  switch (current.purpose)
+  switch (current.pick.what)
   {
-    case Purpose::StopFrame:
-    case Purpose::Broadcast:
+    case Pick::What::Stop:
+    case Pick::What::Broadcast:
       return GatewayRisk::Stop;
-    case Purpose::Velocity:
+    case Pick::What::Velocity:
       if (current.resync)
       {
         return GatewayRisk::None;
       }
       // A 0 is a stop, and its frame the one that may be in the gateway (contract, 8 and 8.8).
       return current.moves ? GatewayRisk::Motion : GatewayRisk::Stop;
-    case Purpose::Refresh:
-    case Purpose::KeepAlive:
-    case Purpose::Setting:
-      // A setting may have taken the refresh's turn.
+    case Pick::What::Refresh:
+    case Pick::What::Connect:
+    case Pick::What::KeepAlive:
       return current.pick.deadline ? GatewayRisk::Refresh : GatewayRisk::None;
     default:
       return GatewayRisk::None;
@@ -57,7 +56,8 @@ void GatewayTraffic::note(const InFlight& current, const wire::Reply& reply)
   {
     bus_.gateway.lost(reply.finished_at, reply.ticket);
   }
-  const bool read = current.purpose == Purpose::Refresh || current.purpose == Purpose::Setting;
+  const bool read = current.pick.what == Pick::What::Refresh || current.pick.what == Pick::What::Connect ||
+                    current.pick.what == Pick::What::Setting;
   if (!isAnswered(reply) && read)
   {
     othersFirst(bus_.gateway.freeAt(reply.finished_at), *bus_.inverters[current.inverter]);

@@ -57,7 +57,7 @@ SlowLeave Polls::slowLeave(TimePoint now, const Inverter& inverter) const
 InFlight Polls::compose(TimePoint now, const Pick& pick)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  InFlight current = exchangeFor(pick, Purpose::Refresh);
+  InFlight current = exchangeFor(pick);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   drive::ReadBlock block = inverter.refresh.next(now, slowLeave(now, inverter));
   current.request = inverter.drive.read(inverter.config.node, block);
@@ -89,7 +89,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
   if (!resync && !bus_.line.mayAsk(current.request) && serve_by && *serve_by <= now)
   {
     const auto spare = guard_.spareRead(inverter);
-    current.purpose = spare ? Purpose::KeepAlive : current.purpose;
+    current.pick.what = spare ? Pick::What::KeepAlive : current.pick.what;
     current.request = spare.value_or(current.request);
   }
   current.request = inverter.prepared(current.request);

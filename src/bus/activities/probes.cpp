@@ -26,7 +26,7 @@ Probes::Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stop
 InFlight Probes::compose(const Pick& pick)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  InFlight current = exchangeFor(pick, Purpose::Probe);
+  InFlight current = exchangeFor(pick);
   current.loopback = byLoopback(inverter) && inverter.drive.loopback(inverter.config.node, 0).has_value();
   current.request = request(inverter, ++bus_.loopback_number, timeout(inverter));
   inverter.link.probeSent();

@@ -21,7 +21,7 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
   {
     return true;
   }
-  const bool stop_write = current.purpose == Purpose::StopFrame && !inverter.stop.written();
+  const bool stop_write = current.pick.what == Pick::What::Stop && !inverter.stop.written();
   current.may_be_late = stop_write;
   const bool last_frame = bus_.shutting_down && inverter.link.silent();
   if (stop_write && (last_frame || !inverter.stop.wantsClearLine()))
@@ -39,22 +39,22 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
     current.loopback = true;
     return true;
   }
-  if (current.purpose == Purpose::StopFrame)
+  if (current.pick.what == Pick::What::Stop)
   {
     return stop_write || readBackSafely(inverter, current);
   }
   const TimePoint allowed = std::max(bus_.line.mayAskAt(current.request), now + std::chrono::milliseconds(1));
-  if (current.purpose == Purpose::Velocity)
+  if (current.pick.what == Pick::What::Velocity)
   {
     // The other members of a group don't wait for it.
     bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, allowed,
                             inverter.movement.target() && inverter.movement.target()->zero);
   }
-  else if (current.purpose == Purpose::Job)
+  else if (current.pick.what == Pick::What::Service)
   {
     bus_.scheduler.postpone(current.pick.command, allowed);
   }
-  else if (current.purpose == Purpose::Setting)
+  else if (current.pick.what == Pick::What::Setting || current.pick.what == Pick::What::Connect)
   {
     // The status may have another shape.
     inverter.pauses.holdSettings(allowed);
@@ -62,7 +62,7 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
   else
   {
     const auto serve_by =
-        current.purpose == Purpose::Refresh ? inverter.serveBy(bus_.budget.deadline_margin) : std::nullopt;
+        current.pick.what == Pick::What::Refresh ? inverter.serveBy(bus_.budget.deadline_margin) : std::nullopt;
     const bool early = serve_by && *serve_by < allowed && spareRead(inverter);
     inverter.pauses.holdStatus(early ? std::max(*serve_by, now + std::chrono::milliseconds(1)) : allowed);
   }

@@ -62,8 +62,9 @@ std::optional<InFlight> Stops::composeBroadcast(TimePoint now)
   bus_.broadcast_waits = kept;
   broadcast_due_ = false;
   broadcast_last_ = true;
-  InFlight current;
-  current.purpose = Purpose::Broadcast;
+  Pick pick;
+  pick.what = Pick::What::Broadcast;
+  InFlight current = exchangeFor(pick);
   // broadcastIsSafe() has seen that there is one.
   current.request = *broadcastStop(bus_.inverters.front()->drive);
   return current;
@@ -78,7 +79,7 @@ InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
     // Rule 4.4: its one frame is the stop itself.
     inverter.stop.writeAgain();
   }
-  InFlight current = exchangeFor(pick, Purpose::StopFrame);
+  InFlight current = exchangeFor(pick);
   current.request = inverter.prepared(inverter.stop.next());
   if (pick.probe)
   {
@@ -91,11 +92,11 @@ InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
 void Stops::sent(TimePoint now, const InFlight& current)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
-  if (current.purpose == Purpose::Broadcast && !bus_.gateway.active())
+  if (current.pick.what == Pick::What::Broadcast && !bus_.gateway.active())
   {
     noteLatency(now - broadcast_requested_);
   }
-  if (current.purpose == Purpose::StopFrame && !current.resync)
+  if (current.pick.what == Pick::What::Stop && !current.resync)
   {
     traffic_.tellOfCostlyStop(inverter);
     const auto latency = inverter.stop.sent(now);

@@ -78,12 +78,12 @@ bool TelnetStops::mustWait(TimePoint now, const InFlight& current)
 {
   const bool unproven =
       bus_.configuration.bus.gateway && !bus_.configuration.bus.modbus_tcp && !bus_.line.provenSinceOpen();
-  const bool writes = current.purpose == Purpose::Velocity || current.purpose == Purpose::Job;
+  const bool writes = current.pick.isCommand();
   if (unproven && writes)
   {
     bus_.scheduler.postpone(current.pick.command, now + seconds(UNPROVEN_PERIOD_S));
   }
-  return unproven && (writes || current.purpose == Purpose::Release);
+  return unproven && (writes || current.pick.what == Pick::What::Release);
 }
 }  // namespace bus
 }  // namespace inverter_bus

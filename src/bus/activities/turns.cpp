@@ -39,7 +39,7 @@ TimePoint Turns::countedFrom(const wire::Reply& reply) const
 void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
 {
   Duration cost{ 0 };
-  if (current.purpose == Purpose::Refresh && isAnswered(reply))
+  if (current.pick.what == Pick::What::Refresh && isAnswered(reply))
   {
     cost = bus_.line.cost(current.request, Duration{ 0 });
   }

@@ -55,7 +55,7 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
       }
       Pick of_member = pick;
       of_member.inverter = member;
-      InFlight current = exchangeFor(of_member, Purpose::Velocity);
+      InFlight current = exchangeFor(of_member);
       current.write = *write;
       current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
       current.request = inverter.prepared(write->request);
@@ -68,7 +68,7 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
 
 void Velocities::sent(const InFlight& current)
 {
-  if (current.purpose != Purpose::Velocity || current.resync)
+  if (current.pick.what != Pick::What::Velocity || current.resync)
   {
     return;
   }
@@ -84,7 +84,7 @@ void Velocities::sent(const InFlight& current)
 bool Velocities::wears(const InFlight& current) const
 {
   const Inverter& inverter = *bus_.inverters[current.inverter];
-  return current.purpose == Purpose::Velocity && inverter.drive.wears(current.write.point) &&
+  return current.pick.what == Pick::What::Velocity && inverter.drive.wears(current.write.point) &&
          !inverter.settings.connected();
 }
 

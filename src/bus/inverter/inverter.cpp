@@ -327,6 +327,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_written = stop.pending() && stop.written();
   view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = pauses.statusNotBefore();
+  view.connect_due = connectDue(now);
   const bool refused = settings.pauseBeforeNext() > Duration{ 0 };
   view.background = link.known() && !link.offline() && settings.pending() && pauses.settingsAllowed(now, refused);
   view.serve_by = serveBy(deadline_margin);

@@ -46,6 +46,8 @@ struct ModbusLimits
 class ModbusSlave : public SimulatedDrive
 {
 public:
+  using Limits = ModbusLimits;
+
   ModbusSlave(std::string name, int station, std::uint64_t seed, TimePoint start, ModbusLimits limits);
 
   bool addressedBy(const Bytes& frame) const override;
@@ -60,20 +62,21 @@ protected:
   Answer exceptionAnswer(const Bytes& frame, int code) override;
   Bytes foreignReply(const Bytes& reply, bool other_station) override;
 
-  /// @return true when `station` addresses several drives and this one is among them; plain Modbus: 0
+  /// \p station addresses several drives and this one is among them; plain Modbus: 0.
   virtual bool isGroup(std::uint8_t station) const;
-  /// @return false for a broadcast that the drive passes over although its function code is one for broadcasts
+  /// False for a broadcast that the drive passes over although its function code is one for broadcasts.
   virtual bool takesBroadcast(const Bytes& frame) const;
   /// From the end of the request's silence to the reply.
   virtual Duration replyDelay() const = 0;
   /// A good request was heard (the drive's communication watchdog lives on this); before it is executed.
   virtual void heard(std::uint8_t function) = 0;
 
-  virtual ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values) = 0;
-  virtual ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values) = 0;
+  /// A brand without coils leaves these two as they are.
+  virtual ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values);
+  virtual ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values);
   virtual ModbusException readRegisters(std::uint16_t wire, std::uint16_t count,
                                         std::vector<std::uint16_t>& values) = 0;
-  /// @param function 06h, 10h or 17h, for drives that tell them apart
+  /// All of it or nothing. \p function is 06h, 10h or 17h, for drives that tell them apart.
   virtual ModbusException writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
                                          std::uint8_t function) = 0;
 

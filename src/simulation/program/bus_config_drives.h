@@ -11,10 +11,8 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// The map `simulation`: what it says about drives of the scan list, and drives that no scan list knows.
-/// @param simulation nullptr: there is none
-/// @param line what a further drive is set to unless it says otherwise
-/// @throws ConfigError
+/// The map `simulation`: what it says about drives of the scan list, and drives that no scan list knows; null: there
+/// is none. \p line is what a further drive is set to unless it says otherwise. \throws ConfigError
 void readSimulation(const config::Value* simulation, const LineSettings& line, BusConfig& config);
 }  // namespace simulation
 }  // namespace inverter_bus

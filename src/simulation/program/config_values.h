@@ -16,10 +16,10 @@ namespace simulation
 {
 using config::Value;
 
-/// @throws ConfigError "place: value (allowed: ...)"
+/// \throws ConfigError "place: value (allowed: ...)"
 [[noreturn]] void refuse(const std::string& place, const Value* value, const std::string& allowed);
 
-/// @return nullptr when there is no such key, or \p map is none
+/// Null where there is no such key, or \p map is none.
 const Value* find(const Value* map, const std::string& key);
 
 // Each throws ConfigError where the value has another type or is not allowed; nullptr: it is missing.
@@ -31,8 +31,7 @@ bool toFlag(const Value* value, const std::string& place);
 std::string toText(const Value* value, const std::string& place);
 Parity toParity(const Value* value, const std::string& place);
 
-/// Key `baud_rate`, `parity`, `data_bits` or `stop_bits`, into \p line.
-/// @return false for another key
+/// Key `baud_rate`, `parity`, `data_bits` or `stop_bits`, into \p line. False for another key. \throws ConfigError
 bool readLineKey(const std::string& key, const Value& value, const std::string& place, LineSettings& line);
 }  // namespace simulation
 }  // namespace inverter_bus

@@ -70,25 +70,25 @@ void HitachiDrive::buildMonitors()
   addMonitor(0x1007, 1, [this] { return static_cast<double>(coilWord(0x0007) & ((1U << model_.inputs) - 1U)); });
   addMonitor(0x1008, 1, [this] { return (motor_.turning() ? 1.0 : 0.0) + (tripped_ ? 4.0 : 0.0); });  // d006
   addMonitor(0x1009, 2, [this] { return std::abs(motor_.frequency()) * memory_.ram(code_.b086); });   // d007
-  addMonitor(0x100B, 2, zero);                                               // d008, no encoder
-  addMonitor(0x100D, 1, zero);                                               // d009
-  addMonitor(0x100E, 1, zero);                                               // d010
-  addMonitor(0x1010, 1, [this] { return motor_.torque(); });                 // d012
-  addMonitor(0x1011, 1, [this] { return motor_.voltage() * 10.0; });         // d013
-  addMonitor(0x1012, 1, [this] { return motor_.power() * 10.0; });           // d014
-  addMonitor(0x1013, 2, [this] { return energy_ * 10.0; });                  // d015
-  addMonitor(0x1015, 2, [this] { return std::floor(run_time_ / HOUR); });    // d016
-  addMonitor(0x1017, 2, [this] { return std::floor(power_time_ / HOUR); });  // d017
-  addMonitor(0x1019, 1, [this] { return motor_.temperature() * 10.0; });     // d018
-  addMonitor(0x101D, 1, zero);                                               // d022
-  addMonitor(0x101E, 1, zero);                                               // d023
-  addMonitor(0x101F, 1, zero);                                               // d024
-  addMonitor(0x1026, 1, [this] { return motor_.dcVoltage() * 10.0; });       // d102
-  addMonitor(0x1027, 1, zero);                                               // d103
-  addMonitor(0x1028, 1, [this] { return thermal_ * 1000.0; });               // d104
-  addMonitor(0x102E, 2, zero);                                               // d025
-  addMonitor(0x1030, 2, zero);                                               // d026
-  addMonitor(0x1032, 2, zero);                                               // d027
+  addMonitor(0x100B, 2, zero);                                                      // d008, no encoder
+  addMonitor(0x100D, 1, zero);                                                      // d009
+  addMonitor(0x100E, 1, zero);                                                      // d010
+  addMonitor(0x1010, 1, [this] { return motor_.torque(); });                        // d012
+  addMonitor(0x1011, 1, [this] { return motor_.voltage() * 10.0; });                // d013
+  addMonitor(0x1012, 1, [this] { return motor_.power() * 10.0; });                  // d014
+  addMonitor(0x1013, 2, [this] { return usage_.energy() * 10.0; });                 // d015
+  addMonitor(0x1015, 2, [this] { return std::floor(usage_.runTime() / HOUR); });    // d016
+  addMonitor(0x1017, 2, [this] { return std::floor(usage_.powerTime() / HOUR); });  // d017
+  addMonitor(0x1019, 1, [this] { return motor_.temperature() * 10.0; });            // d018
+  addMonitor(0x101D, 1, zero);                                                      // d022
+  addMonitor(0x101E, 1, zero);                                                      // d023
+  addMonitor(0x101F, 1, zero);                                                      // d024
+  addMonitor(0x1026, 1, [this] { return motor_.dcVoltage() * 10.0; });              // d102
+  addMonitor(0x1027, 1, zero);                                                      // d103
+  addMonitor(0x1028, 1, [this] { return usage_.heat() * 1000.0; });                 // d104
+  addMonitor(0x102E, 2, zero);                                                      // d025
+  addMonitor(0x1030, 2, zero);                                                      // d026
+  addMonitor(0x1032, 2, zero);                                                      // d027
   buildModelMonitors();
   buildTripMonitors();
 }

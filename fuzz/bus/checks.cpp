@@ -28,6 +28,7 @@ Checks::Checks(const Scene& scene, simulation::SimulatedBus& bus, const util::Cl
   , turns(observed)
   , bounded_velocities(observed)
   , lowest_class(observed)
+  , slow_reads(observed)
   , liveness(observed)
   , probes(observed)
   , supervision(observed, std::move(budget_warns))

@@ -19,6 +19,7 @@
 #include "fuzz/bus/checks/services.h"
 #include "fuzz/bus/checks/set_points.h"
 #include "fuzz/bus/checks/shutdown.h"
+#include "fuzz/bus/checks/slow_reads.h"
 #include "fuzz/bus/checks/stops.h"
 #include "fuzz/bus/checks/supervision.h"
 #include "fuzz/bus/checks/told_locks.h"
@@ -67,6 +68,7 @@ struct Checks
   checks::Turns turns;
   checks::BoundedVelocities bounded_velocities;
   checks::LowestClass lowest_class;
+  checks::SlowReads slow_reads;
   checks::Liveness liveness;
   checks::Probes probes;
   checks::Supervision supervision;

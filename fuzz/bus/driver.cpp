@@ -26,6 +26,7 @@ wire::OpenResult WatchedPort::open(std::string& error)
 bool WatchedPort::send(const wire::Bytes& frame)
 {
   watch_.sending(clock_.now(), frame);
+  on_the_way(frame);
   const bool sent = VirtualPort::send(frame);
   if (!sent)
   {

@@ -3,6 +3,7 @@
 #ifndef INVERTER_BUS_FUZZ_DRIVER_H
 #define INVERTER_BUS_FUZZ_DRIVER_H
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -25,6 +26,9 @@ public:
   wire::OpenResult open(std::string& error) override;
   bool send(const wire::Bytes& frame) override;
   wire::ReceiveResult receive(wire::Bytes& buffer, TimePoint deadline) override;
+
+  /// What becomes of a request on its way.
+  std::function<void(const wire::Bytes&)> on_the_way = [](const wire::Bytes&) {};
 
 private:
   AppointedClock& clock_;

@@ -62,6 +62,7 @@ void StatusWatch::takeOffline(TimePoint now, std::size_t index)
   }
   checks_.locks.wentOffline(index);
   checks_.lowest_class.wentOffline(index);
+  checks_.slow_reads.wentOffline(index);
   checks_.stops.drop(index);
   checks_.zeros.drop(index);
   checks_.recorder.wentOffline(index);

@@ -186,6 +186,19 @@ void World::provoke(const std::string& command)
   checker_.glance(clock_.now());
 }
 
+void World::loseSlowReplies(std::optional<std::size_t> index)
+{
+  story_.event(clock_.now(),
+               index ? scene_.title(*index) + " is not heard when it tells slow values" : "all are heard");
+  driver_.port.on_the_way = [this, index](const wire::Bytes& frame) {
+    const RequestFacts facts = readRequest(scene_, frame);
+    if (index && facts.inverter == index && facts.reads_slow)
+    {
+      simulated_.command(scene_.inverters[*index].name + " lost_reply", clock_.now());
+    }
+  };
+}
+
 void World::cutPower(std::size_t index, double duration)
 {
   const InverterFacts& facts = scene_.inverters[index];

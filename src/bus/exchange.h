@@ -27,6 +27,8 @@ struct InFlight
   bool loopback = false;
   /// A stop's write that a late reply to an earlier request could answer.
   bool may_be_late = false;
+  /// Takes from the share of the slow values (contract, 8.3).
+  bool slow = false;
   /// A velocity's frame that may set RUN or raise the frequency.
   bool moves = false;
   Write write;

@@ -111,6 +111,7 @@ InverterStatus emptyMessage()
   message.dc_voltage = UNKNOWN;
   message.torque = UNKNOWN;
   message.temperature = UNKNOWN;
+  message.slow_age = UNKNOWN;
   return message;
 }
 
@@ -160,6 +161,7 @@ InverterStatus toMessage(const bus::InverterStatus& status, const bus::InverterC
   putFlags(monitor, message);
   putCodes(monitor, drive, message);
   putQuantities(monitor, message);
+  message.slow_age = status.slow_age && !status.communication_error ? toSeconds(*status.slow_age) : UNKNOWN;
   put(direction(monitor, config.hz_per_unit), message.direction, InverterStatus::KNOWN_DIRECTION, message.known);
   put(velocity(monitor, config.hz_per_unit), message.velocity, InverterStatus::KNOWN_VELOCITY, message.known);
   return message;

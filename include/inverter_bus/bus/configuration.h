@@ -76,7 +76,8 @@ struct BusConfig
   std::optional<wire::TcpAddress> gateway;
   /// tcp://: the gateway speaks Modbus TCP; otherwise it passes RTU frames on as they are.
   bool modbus_tcp = false;
-  double interval = 0.0;  ///< [s] 0-655.35
+  double interval = 0.0;       ///< [s] 0-655.35
+  double slow_interval = 1.0;  ///< [s] shortest period of the slow values, 0: they are never read
   double response_timeout = 0.1;
   double gateway_timeout = 3.0;  ///< [s] tcp://: after that a gateway has given up a request that it left unanswered
   /// [s] longest pause inside a reply; resolved by makeTiming() where it is not given.

@@ -34,6 +34,7 @@ BusState::BusState(const Configuration& the_configuration, const wire::Line& lin
   : configuration(the_configuration)
   , budget(Budget(configuration, line).figures())
   , scheduler(schedulerSettings(configuration.bus))
+  , slow_share(budget.slow)
   , outbox(configuration.bus.inverters.size())
   , refusals(configuration.bus.inverters.size())
   , gateway({ configuration.bus.modbus_tcp, seconds(configuration.bus.gateway_timeout),

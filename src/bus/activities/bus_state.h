@@ -19,6 +19,7 @@
 #include "bus/report/refusal_log.h"
 #include "bus/rules/budget.h"
 #include "bus/rules/scheduler.h"
+#include "bus/rules/slow_share.h"
 #include "inverter_bus/bus/types.h"
 #include "inverter_bus/wire/line.h"
 
@@ -38,6 +39,7 @@ struct BusState
   /// In node order.
   std::vector<std::unique_ptr<Inverter>> inverters;
   Scheduler scheduler;
+  SlowShare slow_share;
   Outbox outbox;
   LoadMeter meter;
   LineWatch line_watch;

@@ -168,6 +168,8 @@ std::vector<InverterView> GatewayTraffic::views(TimePoint now) const
   for (const auto& inverter : bus_.inverters)
   {
     views.push_back(inverter->view(now, bus_.budget.deadline_margin));
+    // A setting that is repeated waits for the share of the slow values (contract, 8.3).
+    views.back().background = views.back().background && (!inverter->settings.repeats() || bus_.slow_share.open(now));
     views.back().stop_pending = views.back().stop_pending && !untested(*inverter);
     views.back().stop_not_before = stopNotBefore(now, *inverter);
     views.back().refresh_unanswered = bus_.gateway.refreshUnanswered(now, inverter->index);

@@ -10,6 +10,20 @@ namespace inverter_bus
 {
 namespace bus
 {
+namespace
+{
+/// The wire's time for all that takes from the share of the slow values, once: with \p gap before each exchange, \p unread for
+/// one that was not made yet.
+Duration slowNeeds(const Inverter& inverter, Duration gap, Duration unread)
+{
+  const auto& sources = inverter.drive.profile().command_source;
+  const auto repeated = std::count_if(sources.begin(), sources.end(),
+                                      [](const drive::Expectation& source) { return source.when_commanded; });
+  const Duration settings = inverter.movement.runConfirmed() ? unread * repeated : Duration{ 0 };
+  return inverter.refresh.reads().slowNeeds(gap, unread) + settings;
+}
+}  // namespace
+
 Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences)
   : bus_(bus)
   , turns_(turns)
@@ -20,12 +34,32 @@ Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops,
 {
 }
 
+/// What the share of the slow values leaves to \p inverter (contract, 8.3). One whose warning word has a reason to be another
+/// one goes before all others.
+SlowLeave Polls::slowLeave(TimePoint now, const Inverter& inverter) const
+{
+  Duration needs{ 0 };
+  bool others_ask = false;
+  for (const auto& other : bus_.inverters)
+  {
+    if (!other->link.offline())
+    {
+      needs += slowNeeds(*other, bus_.budget.slow.gap, bus_.budget.slow.longest);
+      others_ask = others_ask || (other->index != inverter.index && other->refresh.asksForWarning(now));
+    }
+  }
+  SlowLeave leave;
+  leave.period = bus_.slow_share.reads() ? bus_.slow_share.period(needs) : Duration{ 0 };
+  leave.open = bus_.slow_share.open(now) && (inverter.refresh.asksForWarning(now) || !others_ask);
+  return leave;
+}
+
 InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
-  drive::ReadBlock block = inverter.refresh.next(now);
+  drive::ReadBlock block = inverter.refresh.next(now, slowLeave(now, inverter));
   current.request = inverter.drive.read(inverter.config.node, block);
   while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {
@@ -33,6 +67,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
     block = inverter.refresh.next(now);
     current.request = inverter.drive.read(inverter.config.node, block);
   }
+  current.slow = inverter.refresh.asked().isSlowed();
   // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force; never through a gateway,
   // which could carry them out when everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11).
   if (!bus_.configuration.bus.gateway && !block.chosen.empty() && inverter.mayRepeatWords(now))

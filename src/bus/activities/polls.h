@@ -24,6 +24,7 @@ public:
   void keptAlive(const InFlight& current, const wire::Reply& reply);
 
 private:
+  SlowLeave slowLeave(TimePoint now, const Inverter& inverter) const;
   void refusedStatus(const wire::Reply& reply, Inverter& inverter);
   void judge(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);

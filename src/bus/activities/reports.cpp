@@ -169,6 +169,9 @@ void Reports::addValues(Report& report) const
     report.values.emplace_back("gateway kept by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
     report.values.emplace_back("offline inverter back within", traffic_.returnText());
   }
+  report.values.emplace_back("slow values", bus_.slow_share.reads()
+                                                ? "at most " + util::fixedText(SLOW_SHARE * 100.0, 1) + " % of the wire"
+                                                : std::string("never read"));
   report.values.emplace_back("local echo", bus_.line_watch.facts().echo_found ? "removed" : "none");
   report.values.emplace_back("frames of others", std::to_string(bus_.line_watch.facts().counters.foreign_frames));
 }

@@ -44,6 +44,10 @@ void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
     cost = current.cost;
   }
   bus_.meter.exchange(reply.sent_at, reply.finished_at, cost);
+  if (current.slow && !current.resync)
+  {
+    bus_.slow_share.spent(reply.finished_at, price(current, reply) + bus_.budget.slow.gap);
+  }
   if (bus_.shutting_down)
   {
     return;

@@ -121,6 +121,7 @@ BusConfig readBus(const Section& section)
   readPort(section, bus);
   bus.protocol = readProtocol(section, bus);
   bus.interval = section.number("interval", { 0.0, 655.35, false, "s" }, bus.interval);
+  bus.slow_interval = section.number("slow_interval", { 0.0, 3600.0, false, "s" }, bus.slow_interval);
   bus.response_timeout = section.number("response_timeout", { 0.0, 10.0, true, "s" }, bus.response_timeout);
   bus.gateway_timeout = section.number("gateway_timeout", { 0.0, 60.0, true, "s" }, bus.gateway_timeout);
   bus.limit = readLimit(section, bus.limit);

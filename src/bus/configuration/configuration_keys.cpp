@@ -22,7 +22,7 @@ bool contains(const Keys& keys, const std::string& key)
 /// Keys that the contract has for a later version: to ignore them would promise what is not done.
 const Keys& laterKeys()
 {
-  static const Keys KEYS{ "slow_interval", "in_service", "parameters", "parameters_on_difference", "configure_map" };
+  static const Keys KEYS{ "in_service", "parameters", "parameters_on_difference", "configure_map" };
   return KEYS;
 }
 
@@ -77,6 +77,7 @@ const Keys& busKeys()
                           "stop_bits",
                           "rs485",
                           "interval",
+                          "slow_interval",
                           "response_timeout",
                           "gateway_timeout",
                           "pause_in_reply",

@@ -73,6 +73,11 @@ bool DriveSettings::nextWrites() const
   return leave_setup_ || (!identity_.next() && connectStep() != nullptr);
 }
 
+bool DriveSettings::repeats() const
+{
+  return !urgent() && settings_.nextRepeats();
+}
+
 wire::Request DriveSettings::next() const
 {
   if (leave_setup_)

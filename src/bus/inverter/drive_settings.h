@@ -41,6 +41,9 @@ public:
   bool pending() const;
   /// next() writes.
   bool nextWrites() const;
+  /// next() asks for what was told before, or refused for the moment: it takes from the share of the slow values
+  /// (contract, 8.3).
+  bool repeats() const;
   wire::Request next() const;
   void done(const wire::Reply& reply);
   /// How long the next exchange of the lowest class is to wait: 0, or, when all that is left was refused for the moment,

@@ -236,7 +236,7 @@ Judgement Inverter::statusComplete(TimePoint now)
   record.restart();
   interlock.online(now);
   Judgement judgement = compare(now, refresh.fresh(), true);
-  if (evidence.takeSourceDue(now, movement))
+  if (evidence.takeSourceDue(now, movement, refresh.reads().slowPeriod()))
   {
     settings.commanded();
   }

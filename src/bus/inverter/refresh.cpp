@@ -11,6 +11,30 @@ namespace
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
 constexpr double POSTPONED_S = 0.5;
+constexpr std::uint8_t NO_SUCH_ADDRESS = 0x02;
+
+/// Some number in the read is none of the drive's, and never will be.
+bool isHole(const wire::Reply& reply)
+{
+  return reply.pdu.size() > 1 && reply.pdu[1] == NO_SUCH_ADDRESS;
+}
+
+/// The drive's warning word has a reason to be another one.
+bool warns(const drive::Monitor& before, const drive::Monitor& now)
+{
+  const auto changed = [](const std::optional<bool>& one, const std::optional<bool>& other) {
+    return one && other && *one != *other;
+  };
+  return changed(before.overload_warning, now.overload_warning) || changed(before.tripped(), now.tripped());
+}
+
+/// The refresh under way starts again.
+bool backToDirectReads(Refresh& refresh, ChosenBlock& chosen)
+{
+  refresh.useBlock(std::nullopt);
+  chosen.drop();
+  return true;
+}
 }  // namespace
 
 Refresh::Refresh(const drive::Drive& drive) : drive_(drive), reads_(drive), chosen_(drive)
@@ -42,23 +66,11 @@ bool Refresh::takeBlockRefusal()
   return chosen_.takeRefusal();
 }
 
-/// Back to direct reads; the refresh under way starts again.
-bool Refresh::dropBlock()
-{
-  useBlock(std::nullopt);
-  chosen_.drop();
-  return true;
-}
-
-StatusRead& Refresh::atHand()
-{
-  return reads_[plan_.front()];
-}
-
-void Refresh::plan(TimePoint now)
+void Refresh::plan(TimePoint now, const SlowLeave& leave)
 {
   draft_.restart();
-  plan_ = slow_.take(reads_, now, !stamp_);
+  reads_.planPeriod(leave.period);
+  plan_ = slow_.take(reads_, now, !stamp_, leave);
   const std::vector<std::size_t> fast = reads_.open(StatusRead::Kind::Fast, now);
   plan_.insert(plan_.end(), fast.begin(), fast.end());
   if (plan_.empty())
@@ -75,14 +87,19 @@ bool Refresh::takeRefusal()
   return refused;
 }
 
-const drive::ReadBlock& Refresh::next(TimePoint now)
+const StatusRead& Refresh::asked() const
+{
+  return reads_[plan_.front()];
+}
+
+const drive::ReadBlock& Refresh::next(TimePoint now, const SlowLeave& leave)
 {
   asked_at_ = now;
   if (plan_.empty())
   {
-    plan(now);
+    plan(now, leave);
   }
-  return atHand().block;
+  return asked().block;
 }
 
 bool Refresh::advance()
@@ -101,6 +118,10 @@ bool Refresh::advance()
     // Every read was refused, or every one that tells whether the motor runs: that is no status.
     return false;
   }
+  if (warns(fresh_.monitor, draft_.words().monitor))
+  {
+    slow_.askForWarning();
+  }
   fresh_ = draft_.words();
   if (!fresh_.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
   {
@@ -115,16 +136,19 @@ bool Refresh::advance()
 
 bool Refresh::received(const wire::Reply& reply)
 {
-  StatusRead& read = atHand();
+  StatusRead& read = reads_[plan_.front()];
   if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, fresh_.monitor))
   {
-    return dropBlock();
+    return backToDirectReads(*this, chosen_);
   }
   read.values = drive::Monitor();
   drive_.decode(read.block, reply.pdu, read.values, ratings_);
+  read.period = read.ever ? reply.finished_at - read.last : Duration{ 0 };
+  read.took = reply.finished_at - reply.sent_at;
   read.last = reply.finished_at;
   read.ever = true;
   slow_.noteRestart(read.values);
+  slow_.noteWarning(read);
   draft_.take(read, reply);
   return advance();
 }
@@ -132,22 +156,22 @@ bool Refresh::received(const wire::Reply& reply)
 bool Refresh::refused(const wire::Reply& reply)
 {
   const bool lasting = isLastingRefusal(reply);
-  if (!atHand().block.chosen.empty() && chosen_.refused(lasting))
+  if (!asked().block.chosen.empty() && chosen_.refused(lasting))
   {
-    return dropBlock();
+    return backToDirectReads(*this, chosen_);
   }
   if (!lasting)
   {
     // Busy, or locked for the moment: nothing is known, and nothing follows for later refreshes.
     return postpone();
   }
-  if (atHand().block.fields.empty())
+  if (asked().block.fields.empty())
   {
     // A keep-alive that is refused was heard all the same.
     draft_.heard(reply.finished_at);
     return advance();
   }
-  if (reads_.split(plan_.front()))
+  if (reads_.split(plan_.front(), isHole(reply)))
   {
     // The plan's numbers moved: this refresh starts again with the smaller reads.
     plan_.clear();
@@ -159,7 +183,7 @@ bool Refresh::refused(const wire::Reply& reply)
 /// A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
 bool Refresh::leaveOut(const wire::Reply& reply)
 {
-  StatusRead& read = atHand();
+  StatusRead& read = reads_[plan_.front()];
   read.values = drive::Monitor();
   if (read.tellsRun() && !reads_.othersTellRun(plan_.front(), reply.finished_at))
   {
@@ -173,7 +197,7 @@ bool Refresh::leaveOut(const wire::Reply& reply)
 
 bool Refresh::skipSlow()
 {
-  const StatusRead& read = atHand();
+  const StatusRead& read = asked();
   const bool last = plan_.size() < 2;
   return read.kind == StatusRead::Kind::Slow && !slow_.waitedFor(read) && !last && postpone();
 }
@@ -181,7 +205,7 @@ bool Refresh::skipSlow()
 /// The read at hand is not to be had now. Without a slow one the refresh goes on, without a fast one it has no result.
 bool Refresh::postpone()
 {
-  StatusRead& read = atHand();
+  StatusRead& read = reads_[plan_.front()];
   if (read.kind != StatusRead::Kind::Slow)
   {
     run_refused_ = read.tellsRun();
@@ -195,9 +219,9 @@ bool Refresh::postpone()
 void Refresh::failed()
 {
   // A slow read that gets lost must not stand before the run words of the next refresh again.
-  if (!plan_.empty() && atHand().kind == StatusRead::Kind::Slow)
+  if (!plan_.empty() && asked().kind == StatusRead::Kind::Slow)
   {
-    atHand().left_out_until = asked_at_ + seconds(POSTPONED_S);
+    reads_[plan_.front()].left_out_until = asked_at_ + seconds(POSTPONED_S);
   }
   plan_.clear();
 }
@@ -212,7 +236,7 @@ bool Refresh::takeComplete()
 drive::Monitor Refresh::monitor(TimePoint now) const
 {
   drive::Monitor monitor = fresh_.monitor;
-  reads_.addSlowValues(now, seconds(OLDEST_SLOW_VALUE_S), monitor);
+  reads_.addSlowValues(now, monitor);
   return monitor;
 }
 
@@ -224,6 +248,11 @@ const StatusWords& Refresh::fresh() const
 const StatusWords& Refresh::words() const
 {
   return draft_.words();
+}
+
+bool Refresh::asksForWarning(TimePoint now) const
+{
+  return slow_.asksForWarning(reads_, now);
 }
 
 void Refresh::restartNoted()
@@ -248,8 +277,8 @@ void Refresh::forget()
   complete_ = false;
   slow_.forget();
   chosen_.forget();
-  // Reads that were split or left out are tried in full again.
-  reads_.build(std::nullopt);
+  // Reads that were left out, or split for another reason than a hole, are tried in full again.
+  reads_.forget();
 }
 
 const StatusReads& Refresh::reads() const

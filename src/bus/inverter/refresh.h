@@ -18,9 +18,9 @@ namespace bus
 {
 /// The status refresh of one inverter: which read is next, and what the drive has said so far with the time of each word.
 ///
-/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and at most one slow block that is
-/// due. Values belong to the stamp only if they came in one refresh; slow ones leave the status when they are older than
-/// one second (contract, section 2).
+/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and the slow block whose turn it is.
+/// Values belong to the stamp only if they came in one refresh; slow ones have an age of their own (contract, section 2 and
+/// 8.3).
 class Refresh
 {
 public:
@@ -36,8 +36,10 @@ public:
   /// The drive has refused the read of chosen words, or it brought something else than what was chosen; true once.
   bool takeBlockRefusal();
 
-  /// The read that is due; starts a new refresh when none is under way.
-  const drive::ReadBlock& next(TimePoint now);
+  /// The read that is due; starts a new refresh when none is under way, with what \p leave allows of slow values.
+  const drive::ReadBlock& next(TimePoint now, const SlowLeave& leave = SlowLeave());
+  /// That read, until its end is told.
+  const StatusRead& asked() const;
 
   /// The drive has just refused a read of its run words that can't be had in another form; true once.
   bool takeRefusal();
@@ -59,6 +61,8 @@ public:
   const StatusWords& words() const;
   /// Leaves the read at hand out for a while if it is one of the slow values; false: it is not, or nothing follows it.
   bool skipSlow();
+  /// The drive's warning word is the next slow value to be read, on this bus.
+  bool asksForWarning(TimePoint now) const;
   /// The marker of a restart that was just read is dealt with.
   void restartNoted();
   /// What goes before all other slow values.
@@ -71,9 +75,7 @@ public:
   const StatusReads& reads() const;
 
 private:
-  StatusRead& atHand();
-  void plan(TimePoint now);
-  bool dropBlock();
+  void plan(TimePoint now, const SlowLeave& leave);
   bool leaveOut(const wire::Reply& reply);
   bool advance();
   bool postpone();

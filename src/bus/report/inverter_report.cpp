@@ -150,6 +150,7 @@ InverterStatus statusOf(const Inverter& inverter, TimePoint now)
   if (!status.communication_error)
   {
     status.monitor = inverter.refresh.monitor(now);
+    status.slow_age = inverter.refresh.reads().slowAge(now);
   }
   status.run_command = inverter.movement.runCommand();
   status.move_velocity_active = inverter.movement.active();
@@ -205,6 +206,10 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   values.emplace_back("model", profile.title);
   values.emplace_back("age of status",
                       refresh.stamp() ? util::durationText(now - *refresh.stamp()) : std::string("no status yet"));
+  const std::optional<Duration> slow_age = refresh.reads().slowAge(now);
+  values.emplace_back("slow values", slow_age ? "read every " + util::durationText(refresh.reads().slowPeriod()) +
+                                                    ", the oldest is of " + util::durationText(*slow_age) + " ago"
+                                              : std::string("not read yet"));
   values.emplace_back("slowest reply", util::durationText(inverter.link.slowestReply()));
   values.emplace_back("returns", std::to_string(inverter.link.returns()));
   values.emplace_back("locked", inverter.obstacles(now).locked ? "yes" : "no");

@@ -312,6 +312,10 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "threeStopBits", "stop_bits: 3\n" + ONE, { "'stop_bits'", "3", "1, 2" } },
         Wrong{ "unknownRs485", "rs485: rts\n" + ONE, { "'rs485'", "'rts'", "auto, kernel, rts_high, rts_low" } },
         Wrong{ "negativeInterval", "interval: -0.1\n" + ONE, { "'interval'", "-0.1", "from 0 to 655.35 s" } },
+        Wrong{ "negativeSlowInterval", "slow_interval: -1\n" + ONE, { "'slow_interval'", "-1", "from 0 to 3600 s" } },
+        Wrong{ "slowIntervalNotANumber",
+               "slow_interval: .nan\n" + ONE,
+               { "'slow_interval'", "nan", "not finite", ALLOWED } },
         Wrong{ "longInterval", "interval: 655.36\n" + ONE, { "'interval'", "655.36", "from 0 to 655.35 s" } },
         Wrong{ "intervalText", "interval: fast\n" + ONE, { "'interval'", "'fast'", ALLOWED } },
         Wrong{ "intervalTruth", "interval: true\n" + ONE, { "'interval'", "true", "not a number", ALLOWED } },
@@ -618,6 +622,8 @@ TEST(ConfigurationTest, aNumberThatIsATextToYamlIsTakenWithAHint)
   EXPECT_DOUBLE_EQ(0.5, configuration.bus.inverters[0].command_timeout);
   EXPECT_EQ(2U, configuration.warnings.size());
   EXPECT_DOUBLE_EQ(0.005, read("interval: 5.0e-3\n" + ONE).bus.interval);
+  EXPECT_DOUBLE_EQ(1.0, read(ONE).bus.slow_interval);
+  EXPECT_DOUBLE_EQ(0.0, read("slow_interval: 0\n" + ONE).bus.slow_interval);
 }
 
 TEST(ConfigurationTest, whatIsMeantForOthersIsIgnoredWithAWarning)
@@ -649,7 +655,6 @@ TEST(ConfigurationTest, whatResemblesAKeyAtAnyLevelIsRefused)
                                                                   "belongs in scan_list or defaults" },
                                                                 { "name", "belongs in scan_list or defaults" },
                                                                 { "turnaround", "belongs in simulation" },
-                                                                { "slow_interval", "later version" },
                                                                 { "configure_map", "later version" },
                                                                 { "in_service", "later version" },
                                                                 { "parameters", "later version" },

@@ -87,7 +87,14 @@ std::uint16_t lockOf(TimePoint now, const Inverter& inverter, const Publisher& p
 }  // namespace
 
 Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences)
-  : bus_(bus), turns_(turns), traffic_(traffic), stops_(stops), absences_(absences), frames_(bus.inverters.size(), 0)
+  : bus_(bus)
+  , turns_(turns)
+  , traffic_(traffic)
+  , stops_(stops)
+  , absences_(absences)
+  , frames_(bus.inverters.size(), 0)
+  , read_lost_at_(bus.inverters.size())
+  , single_(bus.inverters.size(), false)
 {
 }
 

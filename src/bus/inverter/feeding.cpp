@@ -54,7 +54,8 @@ Feeding::Feeding(const drive::Drive& drive) : drive_(drive)
 
 void Feeding::answered(const wire::Request& request, TimePoint at)
 {
-  if (feeds(request.pdu))
+  // Its time-out counts from when it is heard of first.
+  if (!fed_at_ || feeds(request.pdu))
   {
     fed_at_ = at;
   }

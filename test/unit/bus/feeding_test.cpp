@@ -27,10 +27,14 @@ bool feeds(const drive::Drive& drive, const std::string& pdu)
 {
   Feeding feeding(drive);
   wire::Request request;
+  request.pdu = drive::bytes("03 10 00 00 01");
+  EXPECT_FALSE(feeding.fedAt());
+  feeding.answered(request, at(0));
+  EXPECT_EQ(feeding.fedAt(), at(0)) << "the drive is heard of first";
   request.pdu = drive::bytes(pdu);
   feeding.answered(request, at(100));
-  EXPECT_TRUE(!feeding.fedAt() || *feeding.fedAt() == at(100));
-  return feeding.fedAt().has_value();
+  EXPECT_TRUE(*feeding.fedAt() == at(0) || *feeding.fedAt() == at(100));
+  return *feeding.fedAt() == at(100);
 }
 
 TEST(Feeding, everyAnsweredRequestFeedsAnOrdinaryDrive)

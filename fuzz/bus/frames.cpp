@@ -97,6 +97,11 @@ void readHitachi(const Bytes& frame, unsigned function, RequestFacts& facts)
   {
     facts.set_hertz = (modbusWord(frame, 7) * 65536.0 + modbusWord(frame, 9)) / 100.0;
   }
+  else if (function == WRITE_AND_READ && modbusWord(frame, 6) == F001)
+  {
+    facts.set_hertz = (modbusWord(frame, 11) * 65536.0 + modbusWord(frame, 13)) / 100.0;
+    facts.reads_frequency = covers(facts.address, value, D001);
+  }
   else if (function == READ_REGISTERS)
   {
     facts.reads_frequency = covers(facts.address, value, D001);

@@ -163,6 +163,7 @@ void LineWatch::takeAnswer(TimePoint now, std::size_t index, const ReplyFacts& r
 {
   checks_.bounded_velocities.answered(index);
   checks_.values.answered(now, index, reply);
+  checks_.slow_reads.answered(now, index, reply);
   checks_.liveness.answered(now, index, reply);
   checks_.lowest_class.answered(index);
   checks_.confirmed_stops.answered(now, index, reply);

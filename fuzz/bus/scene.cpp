@@ -54,7 +54,10 @@ class SceneWriter
 {
 public:
   SceneWriter(std::uint64_t number, const std::string& name)
-    : dice_(number * 7919U + 17U), limits_dice_(number * 104729U + 29U), slow_dice_(number * 15485863U + 43U)
+    : dice_(number * 7919U + 17U)
+    , limits_dice_(number * 104729U + 29U)
+    , slow_dice_(number * 15485863U + 43U)
+    , feed_dice_(number * 32452843U + 7U)
   {
     scene_.name = name;
   }
@@ -268,6 +271,8 @@ private:
     facts.free_parameter = "ACC";
     parameters << "ACC: 1.0, dEC: " << facts.fixed_value;
     more = ", drive: toshiba_vfs15";
+    facts.fed_by_word = feed_dice_.hits(0.4);
+    more += facts.fed_by_word ? ", overrides: {feeds: command_word}" : "";
     facts.block = scene_.name == "toshiba_block" || (scene_.name == "mixed" && dice_.hits(0.5));
     if (facts.block)
     {
@@ -298,6 +303,7 @@ private:
   Dice dice_;
   Dice limits_dice_;
   Dice slow_dice_;
+  Dice feed_dice_;
   bool limits_ = false;
   bool all_saturate_ = false;
   Scene scene_;

@@ -254,6 +254,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
   if (current.request.expects_reply && isAnswered(reply))
   {
     inverter.link.answered(reply);
+    inverter.feeding.answered(current.request, reply.finished_at);
   }
   // A probe that nobody answers says nothing of the loop-back: the drive is away.
   if (current.loopback && (current.resync || isAnswered(reply)))
@@ -277,6 +278,7 @@ void Coordinator::endedBy(const InFlight& current, const wire::Reply& reply)
       break;
     case Pick::What::Velocity:
       activities_.velocities.ended(current, reply);
+      activities_.polls.cameWithWrite(current, reply);
       break;
     case Pick::What::Service:
       activities_.absences.take(activities_.services.ended(current, reply), reply, inverter);

@@ -29,6 +29,10 @@ struct InFlight
   bool may_be_late = false;
   /// Takes from the share of the slow values (contract, 8.3).
   bool slow = false;
+  /// A write that also reads the status (17H).
+  bool with_status = false;
+  /// Repeats command words that the drive has confirmed, and is no read.
+  bool keeps_alive = false;
   /// A velocity's frame that may set RUN or raise the frequency.
   bool moves = false;
   Write write;

@@ -58,6 +58,15 @@ void SlowReads::begins(TimePoint now)
   }
 }
 
+void SlowReads::answered(TimePoint now, std::size_t index, const ReplyFacts& reply)
+{
+  // One that is refused for the moment is asked for again.
+  if (observed_.exchange.facts.reads_slow && reply.good)
+  {
+    answered_[index][observed_.exchange.facts.address] = now;
+  }
+}
+
 void SlowReads::ended(TimePoint now)
 {
   const Exchange& exchange = observed_.exchange;
@@ -66,7 +75,6 @@ void SlowReads::ended(TimePoint now)
   {
     return;
   }
-  answered_[*exchange.facts.inverter][exchange.facts.address] = now;
   spent_.emplace_back(now, now - exchange.began + observed_.scene.gap());
   sum_ += spent_.back().second;
   while (now - spent_.front().first > seconds(WINDOW_S))

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fuzz/bus/observed.h"
+#include "fuzz/bus/recorder.h"
 
 namespace inverter_bus
 {
@@ -25,6 +26,7 @@ public:
 
   /// A request goes.
   void begins(TimePoint now);
+  void answered(TimePoint now, std::size_t index, const ReplyFacts& reply);
   /// Its exchange is over.
   void ended(TimePoint now);
   /// What was read of this one counts no more: all is read anew.

@@ -132,7 +132,8 @@ public:
   bool fitsBlockWrite(const std::vector<Word>& words) const;
   /// All command words in one frame.
   wire::Request writeChosen(std::uint8_t station, const std::vector<Word>& words) const;
-  /// The same, with the reply that read(\p block) would bring (17H).
+  /// The same, with the reply that read(\p block) would bring (17H); without a block write the first of \p words alone, a
+  /// register.
   wire::Request writeAndRead(std::uint8_t station, const std::vector<Word>& words, const ReadBlock& block) const;
   /// Titles and values of the chosen words that no status field shows.
   std::vector<std::pair<std::string, std::string>> chosenValues(const ReadBlock& block, const wire::Bytes& reply,

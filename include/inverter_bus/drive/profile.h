@@ -178,6 +178,17 @@ struct Expectation
   bool when_commanded = false;
 };
 
+/// What a drive's own communication time-out is fed by.
+enum class Feeds
+{
+  /// Every request that it hears.
+  Everything,
+  /// Writes only.
+  Writes,
+  /// Writes of its command word only.
+  CommandWord
+};
+
 /// Where a parameter write ends up.
 enum class Writes
 {
@@ -283,6 +294,7 @@ struct Profile
   /// Item that reads 1 while the drive stores to EEPROM.
   std::optional<Item> store_busy;
   Writes writes = Writes::Ram;
+  Feeds feeds = Feeds::Everything;
 
   /// Monitor items by field name of the status message: run_seen, raw_status, operation, running, direction, ready, at_speed,
   /// at_set_frequency, overload_warning, pid_deviation, faulted, restarted, fault_code, warning_code, output_frequency,

@@ -65,7 +65,14 @@ std::string textOf(LockReason reason, TimePoint now, const Inverter& inverter, c
 }  // namespace
 
 Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences)
-  : bus_(bus), turns_(turns), traffic_(traffic), stops_(stops), absences_(absences), frames_(bus.inverters.size(), 0)
+  : bus_(bus)
+  , turns_(turns)
+  , traffic_(traffic)
+  , stops_(stops)
+  , absences_(absences)
+  , frames_(bus.inverters.size(), 0)
+  , read_lost_at_(bus.inverters.size())
+  , single_(bus.inverters.size(), false)
 {
 }
 

@@ -43,7 +43,10 @@ private:
   bool applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
   void tellRefusal(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
                    std::uint16_t error_id);
-  static std::optional<Write> nextWrite(TimePoint now, const Inverter& inverter, const LineView& line);
+  std::optional<Write> nextWrite(TimePoint now, Inverter& inverter, const LineView& line, bool& with_status) const;
+  bool refusedWithStatus(const InFlight& current, const wire::Reply& reply);
+  bool mustBeReadFirst(const Inverter& inverter) const;
+  void noteLostRead(const InFlight& current, const wire::Reply& reply);
   void fail(const InFlight& current, const wire::Reply& reply, bool too_many_lost);
   void noteBlockRefusal(const InFlight& current, const wire::Reply& reply);
   void finish(const InFlight& current, const wire::Reply& reply);
@@ -55,6 +58,11 @@ private:
   Absences& absences_;
   /// By inverter: frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
   std::vector<unsigned> frames_;
+  /// By inverter: when a write with a read (17H) got lost. A plain read is next, and what is not confirmed goes by plain
+  /// writes (contract, 3.10).
+  std::vector<std::optional<TimePoint>> read_lost_at_;
+  /// By inverter: it has refused such a write of its frequency.
+  std::vector<bool> single_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

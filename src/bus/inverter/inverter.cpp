@@ -36,6 +36,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , loopback(config.modbus_tcp)
   , link(offline_after)
   , evidence(drive)
+  , feeding(drive)
   , motion(drive, config)
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
@@ -348,9 +349,10 @@ std::optional<TimePoint> Inverter::serveBy(Duration deadline_margin) const
   {
     return std::nullopt;
   }
+  const TimePoint fed_at = feeding.needsWrites() ? feeding.fedAt().value_or(*link.lastAnswer()) : *link.lastAnswer();
   const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
   // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
-  return *link.lastAnswer() + std::max(latest, *timeout / 2);
+  return fed_at + std::max(latest, *timeout / 2);
 }
 }  // namespace bus
 }  // namespace inverter_bus

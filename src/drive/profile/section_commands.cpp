@@ -203,6 +203,17 @@ void readCommands(Section& root, const Numbering& numbering, Profile& profile)
     const std::string writes = cursor->choice({ "ram", "eeprom", "unknown" }).value_or("ram");
     profile.writes = writes == "ram" ? Writes::Ram : writes == "eeprom" ? Writes::Eeprom : Writes::Unknown;
   }
+  if (const auto cursor = root.find("feeds"))
+  {
+    const std::string feeds = cursor->choice({ "everything", "writes", "command_word" }).value_or("everything");
+    profile.feeds = feeds == "writes"         ? Feeds::Writes
+                    : feeds == "command_word" ? Feeds::CommandWord
+                                              : Feeds::Everything;
+    if (profile.feeds != Feeds::Everything && profile.protocol != "modbus_rtu")
+    {
+      cursor->complain("is for modbus_rtu only: needs everything");
+    }
+  }
 }
 }  // namespace drive
 }  // namespace inverter_bus

@@ -147,8 +147,9 @@ Options readOptions(int argc, char** argv)
   po::options_description description("bus_master");
   description.add_options()("help", "this text")("scan-list", po::value(&options.scan_list)->required(),
                                                  "the driver's parameters file (YAML)")(
-      "profiles", po::value(&options.profiles)->default_value("config/drives"), "directory of the drive profiles")(
-      "velocity", po::value(&options.velocity)->default_value(0.0), "of all motors, settled")(
+      "profiles", po::value(&options.profiles)->default_value(INVERTER_BUS_ROOT "/config/drives"),
+      "directory of the drive profiles")("velocity", po::value(&options.velocity)->default_value(0.0),
+                                         "of all motors, settled")(
       "warm-up", po::value(&options.warm_up)->default_value(3.0), "[s] before anything is counted")(
       "seconds", po::value(&options.seconds)->default_value(10.0), "how long");
   po::variables_map values;

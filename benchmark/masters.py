@@ -1,10 +1,7 @@
 """Who can be at the master's end of a simulated wire: this driver, the plain loop, and what people use today."""
-import importlib.util
 import os
 import shutil
 import subprocess
-import sys
-import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -54,9 +51,10 @@ class Driver(Master):
 
     name = 'inverter_bus'
 
-    def __init__(self, programs, wire, seconds, warm_up=0.0, velocity=10.0):
+    def __init__(self, programs, wire, seconds, warm_up):
+        """warm_up [s]: from then on all motors turn, and what it costs is counted."""
         super().__init__([os.path.join(programs, 'bus_master'), '--scan-list', wire.scan_list, '--warm-up', str(warm_up),
-                          '--seconds', str(seconds), '--velocity', str(velocity)])
+                          '--seconds', str(seconds), '--velocity', '10'])
 
     def stop(self, station):
         self.tell('stop %d' % (station - 1))
@@ -79,12 +77,14 @@ class Pymodbus(Master):
     name = 'pymodbus loop'
 
     def __init__(self, _programs, wire, seconds):
-        super().__init__([sys.executable, os.path.join(HERE, 'pymodbus_loop.py'), wire.link, str(wire.scene.baud),
+        super().__init__(['/usr/bin/python3', os.path.join(HERE, 'pymodbus_loop.py'), wire.link, str(wire.scene.baud),
                           str(wire.scene.inverters), str(seconds)])
 
 
 def lacks_pymodbus():
-    return None if importlib.util.find_spec('pymodbus') else 'python3-pymodbus is not installed'
+    """Asked of the system's Python, which has Debian's package."""
+    found = subprocess.run(['/usr/bin/python3', '-c', 'import pymodbus'], stderr=subprocess.DEVNULL).returncode == 0
+    return None if found else 'python3-pymodbus is not installed'
 
 
 class Hal(Master):
@@ -158,7 +158,7 @@ class Mb2hal(Hal):
         settings = os.path.join(wire.directory, 'mb2hal.ini')
         with open(settings, 'w') as stream:
             stream.write(self.settings(wire))
-        super().__init__(['loadusr -W mb2hal config=%s' % settings, 'setp mb2hal.run.00 TRUE'])
+        super().__init__(['loadusr -W mb2hal config=%s' % settings, 'setp mb2hal.run.00.bit TRUE'])
 
     def settings(self, wire):
         transactions = [(node, code, first, count, 'n%d_%s' % (node, code[5:7]))
@@ -173,15 +173,10 @@ class Mb2hal(Hal):
         return text
 
     def stop(self, _station):
-        self.tell('setp mb2hal.run.00 FALSE')
+        self.tell('setp mb2hal.run.00.bit FALSE')
 
     def run(self):
-        self.tell('setp mb2hal.run.00 TRUE')
+        self.tell('setp mb2hal.run.00.bit TRUE')
 
     def stopped(self, station):
         return lambda data: data[:2] == bytes([station, 0x0F]) and len(data) > 7 and not data[7] & 0x01
-
-
-def settle(seconds):
-    """The only thing to do while others are measured."""
-    time.sleep(seconds)

@@ -15,7 +15,8 @@ from pymodbus.client import ModbusSerialClient
 
 class Loop:
     def __init__(self, device, baud):
-        self.client = ModbusSerialClient(device, method='rtu', baudrate=baud, parity='N', stopbits=1, bytesize=8, timeout=0.5,
+        # Its time-outs are whole seconds: 0.5 would be 0 (findings/pymodbus_timeout_in_whole_seconds.sh).
+        self.client = ModbusSerialClient(device, method='rtu', baudrate=baud, parity='N', stopbits=1, bytesize=8, timeout=1,
                                          retries=0)
         self.text = b''
         self.stops = set()

@@ -28,11 +28,11 @@ def warm_up(scene):
 
 
 def scan_list(scene, port, keys=''):
-    """YAML. keys: further lines of the top level."""
+    """YAML. keys: further ones of the defaults, such as ', limit: saturate'."""
     nodes = range(1, scene.inverters + 1)
     turnaround = max(0.0, REPLY_DELAY - silence(scene.baud))
     block = ', parameters: ' + BLOCK if scene.drive == 'toshiba_vfs15' else ''
     return ''.join(['port: %s\nbaud_rate: %d\n' % (port, scene.baud),
-                    'defaults: {drive: %s, command_timeout: 0}\n' % scene.drive, keys, 'scan_list:\n'] +
+                    'defaults: {drive: %s, command_timeout: 0%s}\n' % (scene.drive, keys), 'scan_list:\n'] +
                    ['  - {name: belt_%d, node: %d}\n' % (node, node) for node in nodes] + ['simulation:\n'] +
                    ['  belt_%d: {turnaround: %.6f%s}\n' % (node, turnaround, block) for node in nodes])

@@ -15,8 +15,9 @@ class SimulatedWire:
 
     def __init__(self, programs, scene, keys='', realtime_priority=50):
         self.scene = scene
-        self.directory = tempfile.mkdtemp(prefix='inverter_bus_benchmark_')
-        self.link = os.path.join(self.directory, 'line')
+        self.directory = tempfile.mkdtemp(prefix='bench_')
+        os.chmod(self.directory, 0o755)  # LinuxCNC's programs read their files as somebody else
+        self.link = os.path.join(self.directory, 'line')  # short: mb2hal keeps 31 characters of it
         self.scan_list = os.path.join(self.directory, 'bus.yaml')
         self.trace = os.path.join(self.directory, 'trace')
         with open(self.scan_list, 'w') as stream:
@@ -24,7 +25,7 @@ class SimulatedWire:
         self.process = subprocess.Popen(
             [os.path.join(programs, 'simulated_bus'), '--scan-list', self.scan_list, '--link', self.link, '--trace',
              self.trace, '--gap', 'ignore', '--spin', '0.0001', '--realtime-priority', str(realtime_priority)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True, bufsize=1)
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, bufsize=1)
         self.late = None  # [s] the wire's own error on average, once it has ended
         while not os.path.exists(self.link):
             if self.process.poll() is not None:

@@ -36,9 +36,9 @@ def wire_error(programs, calls):
 
 # --- refresh ---------------------------------------------------------------------------------------------------------
 
-def watch(programs, scene, begin, seconds, before, keys=''):
+def watch(programs, scene, begin, seconds, before):
     """One master on a wire of its own. begin(wire, time that it runs) starts it; `before` [s] pass before anything counts."""
-    with SimulatedWire(programs, scene, keys, WIRE_PRIORITY) as wire:
+    with SimulatedWire(programs, scene, WIRE_PRIORITY) as wire:
         master = begin(wire, before + seconds + 3.0)
         time.sleep(before)
         start = time.monotonic()
@@ -78,18 +78,14 @@ def refresh(programs, before_programs, scene, rounds, seconds):
     return found
 
 
-MAP = ', configure_map: true'
-"""Of the defaults of a scan list: the whole status in one exchange."""
-
-
 def whole_status(programs, seconds):
     """5 MX2 at 19200 whose map is used, against the plain loop without legal gaps in the same run."""
-    scene = scenes.SCENES[1]
+    scene = scenes.MAPPED
     try:
-        seen = watch(programs, scene, lambda wire, run: driver(programs, wire, run), seconds, scenes.warm_up(scene), MAP)
+        seen = watch(programs, scene, lambda wire, run: driver(programs, wire, run), seconds, scenes.warm_up(scene))
     except RuntimeError as error:
         return {'missing': 'this build refuses it (%s)' % str(error).strip().splitlines()[-1]}
-    loop = watch(programs, scene, lambda wire, run: masters.PlainLoop(programs, wire, run, 'none'), seconds, 1.0)
+    loop = watch(programs, scenes.SCENES[1], lambda wire, run: masters.PlainLoop(programs, wire, run, 'none'), seconds, 1.0)
     return {'cycle': seen['cycle'], 'illegal': loop['cycle'], 'ratio': ratio(seen['cycle'], loop['cycle'])}
 
 
@@ -114,7 +110,7 @@ def commands(programs, inverters, load, calls):
 
 def cost(programs, drivers, scene, seconds):
     """CPU and memory of the driver without ROS. drivers: where its program is."""
-    with SimulatedWire(programs, scene, '', WIRE_PRIORITY) as wire:
+    with SimulatedWire(programs, scene, WIRE_PRIORITY) as wire:
         master = masters.Driver(drivers, wire, seconds, scenes.warm_up(scene))
         output = master.wait(scenes.warm_up(scene) + seconds + 30.0)
         figures = json.loads(output.strip().splitlines()[-1])
@@ -165,7 +161,7 @@ def beside(programs, contestant, seconds, calls, chance):
     found = {'name': name, 'scene': scenes.title(scene), 'missing': missing}
     if missing:
         return found
-    with SimulatedWire(programs, scene, '', WIRE_PRIORITY) as wire:
+    with SimulatedWire(programs, scene, WIRE_PRIORITY) as wire:
         master = begin(wire, warm_up + 2 * seconds + 4.0 * calls + 60.0)
         time.sleep(warm_up)
         start = time.monotonic()

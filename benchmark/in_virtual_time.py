@@ -25,12 +25,12 @@ def play(programs, what, *options):
 
 
 def options_of(scene):
-    return ['--inverters', scene.inverters, '--baud', scene.baud, '--drive', scene.drive]
+    return ['--inverters', scene.inverters, '--baud', scene.baud, '--drive', scene.drive] + (['--mapped'] if scene.mapped else [])
 
 
-def refresh(programs, scene, seconds, keys=''):
+def refresh(programs, scene, seconds):
     """Periods [s] of the driver and of the plain loop with legal gaps, by median and mean."""
-    played = play(programs, 'refresh', '--seconds', seconds, *options_of(scene), *(['--keys', keys] if keys else []))
+    played = play(programs, 'refresh', '--seconds', seconds, *options_of(scene))
     if played is None:
         return None
     driver, plain = played['driver']['periods'], played['plain']['periods']

@@ -137,7 +137,7 @@ def dead(results):
 
 def commands(results):
     return table(['drives', 'load', 'velocities', 'median', '99 %', 'longest', 'without a frame', 'host wakes up late by (99 %)'],
-                 [[one['inverters'], one['load']] + latency(one['commands']) + [ms(one['wake_ups']['p99'])]
+                 [[one['inverters'], one['load']] + latency(one['commands']) + [ms(one['wake_ups']['p99']) if one['wake_ups'] else '-']
                   for one in results.get('commands', [])])
 
 

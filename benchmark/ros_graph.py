@@ -7,8 +7,10 @@ import time
 
 import scenes
 import traces
-from figures import median, ratio
+from figures import median, ratio, summary
 from simulated_wire import SimulatedWire
+
+HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def lacks_ros():
@@ -78,7 +80,7 @@ def resident(process):
 
 def buses(programs, scene, number, seconds):
     """So many nodes, each with its bus, in one graph: cycle of each, and what a node costs."""
-    wires = [SimulatedWire(programs, scene) for _ in range(number)]
+    wires = [SimulatedWire(programs, scene, realtime_priority=0) for _ in range(number)]
     try:
         with Graph() as graph:
             nodes = [graph.node(programs, 'bus_%d' % index, wire) for index, wire in enumerate(wires, 1)]
@@ -95,3 +97,21 @@ def buses(programs, scene, number, seconds):
     finally:
         for wire in wires:
             wire.__exit__()
+
+
+def velocities(programs, scene, calls):
+    """[s] from a velocity message, published by another process, to the first byte of the frame that writes it."""
+    with SimulatedWire(programs, scene) as wire, Graph() as graph:
+        graph.node(programs, 'bus', wire)
+        time.sleep(scenes.warm_up(scene))
+        output = subprocess.run(['/usr/bin/python3', os.path.join(HERE, 'ros_velocities.py'), 'bus', str(scene.inverters),
+                                 str(calls)], env=graph.environment, stdout=subprocess.PIPE, check=True,
+                                universal_newlines=True).stdout
+        time.sleep(1.0)
+        frames = wire.frames()
+        delays = []
+        for line in output.splitlines():
+            since, station = float(line.split()[0]), int(line.split()[1])
+            head = bytes([station, 0x10, 0, 0])
+            delays.append(traces.delay_to(frames, since, lambda data, head=head: data.startswith(head)))
+        return {'inverters': scene.inverters, 'load': 'idle, over ROS', 'commands': summary(delays), 'wake_ups': None}

@@ -97,8 +97,13 @@ def measure_dead(programs, _before, amounts):
 
 
 def measure_commands(programs, _before, amounts):
-    return {'commands': [in_real_time.commands(programs, inverters, load, amounts.velocities)
-                         for inverters in sorted({5, amounts.real_inverters}) for load in ('idle', 'full')]}
+    numbers = sorted({5, amounts.real_inverters})
+    found = [in_real_time.commands(programs, inverters, load, amounts.velocities)
+             for inverters in numbers for load in ('idle', 'full')]
+    if not ros_graph.lacks_ros():
+        found += [ros_graph.velocities(programs, scenes.Scene(inverters, 19200, 'omron_mx2'), amounts.velocities)
+                  for inverters in numbers]
+    return {'commands': found}
 
 
 def measure_cost(programs, before, amounts):

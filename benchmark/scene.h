@@ -32,8 +32,8 @@ inline std::string scanList(const Scene& scene, const std::string& port)
 {
   std::ostringstream yaml;
   yaml << "port: " << port << "\nbaud_rate: " << scene.baud << "\ndefaults: {drive: " << scene.drive
-       << ", command_timeout: 0}\n"
-       << scene.keys << "scan_list:\n";
+       << ", command_timeout: 0" << (scene.mapped ? ", configure_map: true, confirm: [register_map]" : "") << "}\n"
+       << "scan_list:\n";
   for (unsigned node = 1; node <= scene.inverters; ++node)
   {
     yaml << "  - {name: belt_" << node << ", node: " << node << "}\n";
@@ -47,7 +47,7 @@ inline std::string scanList(const Scene& scene, const std::string& port)
     {
       yaml << ", parameters: {F870: 1, F871: 3, F875: 1, F876: 2, F877: 3, F878: 4, F879: 14}";
     }
-    yaml << "}\n";
+    yaml << (scene.mapped ? ", parameters: {P200: 1, P201: 4101, P202: 4102, P301: 7681, P302: 7937}" : "") << "}\n";
   }
   return yaml.str();
 }

@@ -13,7 +13,7 @@ import traces
 class SimulatedWire:
     """A scene being played. `with` ends it. Requests without a legal gap are served and counted (--gap ignore)."""
 
-    def __init__(self, programs, scene, keys='', realtime_priority=50):
+    def __init__(self, programs, scene, realtime_priority=50):
         self.scene = scene
         self.directory = tempfile.mkdtemp(prefix='bench_')
         os.chmod(self.directory, 0o755)  # LinuxCNC's programs read their files as somebody else
@@ -21,7 +21,7 @@ class SimulatedWire:
         self.scan_list = os.path.join(self.directory, 'bus.yaml')
         self.trace = os.path.join(self.directory, 'trace')
         with open(self.scan_list, 'w') as stream:
-            stream.write(scenes.scan_list(scene, self.link, keys))
+            stream.write(scenes.scan_list(scene, self.link))
         self.process = subprocess.Popen(
             [os.path.join(programs, 'simulated_bus'), '--scan-list', self.scan_list, '--link', self.link, '--trace',
              self.trace, '--gap', 'ignore', '--spin', '0.0001', '--realtime-priority', str(realtime_priority)],

@@ -387,7 +387,7 @@ Options readOptions(int argc, char** argv)
       "inverters", po::value(&options.scene.inverters)->default_value(5), "drives on the bus")(
       "baud", po::value(&options.scene.baud)->default_value(19200), "baud rate, 8N1")(
       "drive", po::value(&options.scene.drive)->default_value("omron_mx2"), "omron_mx2 or toshiba_vfs15")(
-      "keys", po::value(&options.scene.keys), "further lines of the scan list")(
+      "mapped", po::bool_switch(&options.scene.mapped), "MX2: with their register map")(
       "seconds", po::value(&options.seconds)->default_value(60.0), "of bus time to watch")(
       "dead", po::value(&options.dead)->default_value(0), "drives that do not answer")(
       "fault", po::value(&options.fault)->default_value("silent"), "silent, late or broken: how they do not")(
@@ -402,7 +402,6 @@ Options readOptions(int argc, char** argv)
     std::exit(EXIT_SUCCESS);
   }
   po::notify(values);
-  options.scene.keys += options.scene.keys.empty() ? "" : "\n";
   if (options.dead >= options.scene.inverters)
   {
     throw std::runtime_error("--dead: fewer than --inverters");

@@ -110,10 +110,11 @@ class Scenes(unittest.TestCase):
     def test_the_reply_comes_after_the_same_time_at_every_rate(self):
         self.assertAlmostEqual(scenes.silence(9600), 0.00364583, places=6)
         self.assertEqual(scenes.silence(115200), 0.00175)
-        text = scenes.scan_list(scenes.Scene(2, 9600, 'omron_mx2'), '/tmp/line', ', limit: saturate')
-        self.assertIn('belt_2: {turnaround: 0.001354}', text)
-        self.assertIn('defaults: {drive: omron_mx2, command_timeout: 0, limit: saturate}', text)
+        text = scenes.scan_list(scenes.Scene(2, 9600, 'omron_mx2'), '/tmp/line')
+        self.assertIn('belt_2: {turnaround: 0.001354, parameters: {}}', text)
+        self.assertIn('defaults: {drive: omron_mx2, command_timeout: 0}', text)
         self.assertIn('F870: 1', scenes.scan_list(scenes.SCENES[-1], '/tmp/line'))
+        self.assertIn('command_timeout: 0, configure_map: true', scenes.scan_list(scenes.MAPPED, '/tmp/line'))
         self.assertEqual(scenes.title(scenes.SCENES[-1]), '1 VF-S15, 19200')
 
     def test_scene_h_says_the_same(self):
@@ -121,6 +122,8 @@ class Scenes(unittest.TestCase):
             header = stream.read()
         block = re.search(r'parameters: (\{F870.*?\})', header).group(1)
         self.assertEqual(block, scenes.BLOCK)
+        self.assertIn(scenes.MAP, header)
+        self.assertIn('configure_map: true, confirm: [register_map]', header)
         self.assertEqual(float(re.search(r'reply_delay = ([\d.]+)', header).group(1)), scenes.REPLY_DELAY)
 
 

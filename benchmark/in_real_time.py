@@ -84,7 +84,7 @@ def whole_status(programs, seconds):
     try:
         seen = watch(programs, scene, lambda wire, run: driver(programs, wire, run), seconds, scenes.warm_up(scene))
     except RuntimeError as error:
-        return {'missing': 'this build refuses it (%s)' % str(error).strip().splitlines()[-1]}
+        return {'missing': 'this build has no configure_map' if 'configure_map' in str(error) else str(error)}
     loop = watch(programs, scenes.SCENES[1], lambda wire, run: masters.PlainLoop(programs, wire, run, 'none'), seconds, 1.0)
     return {'cycle': seen['cycle'], 'illegal': loop['cycle'], 'ratio': ratio(seen['cycle'], loop['cycle'])}
 

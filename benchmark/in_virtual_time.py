@@ -88,3 +88,15 @@ def queue(programs, instants):
             return []
         found.append(dict(summary(played['stops']), dead=dead, histogram=histogram(played['stops'], BIN, BINS)))
     return found
+
+
+def velocities(programs, instants):
+    """From a velocity at a random instant to the first byte of the frame that writes it."""
+    found = []
+    for inverters in (5, 31):
+        for load in ('idle', 'full'):
+            played = play(programs, 'velocities', '--inverters', inverters, '--load', load, '--instants', instants)
+            if played is None:
+                return []
+            found.append({'inverters': inverters, 'load': load, 'commands': summary(played['velocities'])})
+    return found

@@ -55,9 +55,26 @@ class Driver(Master):
         """warm_up [s]: from then on all motors turn, and what it costs is counted."""
         super().__init__([os.path.join(programs, 'bus_master'), '--scan-list', wire.scan_list, '--warm-up', str(warm_up),
                           '--seconds', str(seconds), '--velocity', '10'])
+        self.drive = wire.scene.drive
 
     def stop(self, station):
         self.tell('stop %d' % (station - 1))
+
+    def stopped(self, station):
+        return vfs15_stopped(station) if self.drive == 'toshiba_vfs15' else super().stopped(station)
+
+
+def vfs15_stopped(station):
+    """A VF-S15's FA00 without bit 10 (RUN): by 06H, or first of the two words of its block by 10H or 17H."""
+    words = {0x06: (bytes([0xFA, 0x00]), 2, 4), 0x10: (bytes([0x18, 0x70]), 2, 7), 0x17: (bytes([0x18, 0x70]), 6, 11)}
+
+    def judge(data):
+        if data[0] != station or data[1] not in words:
+            return False
+        address, at, word = words[data[1]]
+        return data[at:at + 2] == address and len(data) > word and not data[word] & 0x04
+
+    return judge
 
 
 class PlainLoop(Master):
@@ -144,8 +161,7 @@ class Vfs11(Hal):
         self.tell('setp vfs11_vfd.spindle-on TRUE')
 
     def stopped(self, station):
-        # FA00 without bit 10, RUN.
-        return lambda data: data[:4] == bytes([station, 0x06, 0xFA, 0x00]) and not data[4] & 0x04
+        return vfs15_stopped(station)
 
 
 class Mb2hal(Hal):

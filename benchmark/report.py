@@ -136,9 +136,12 @@ def dead(results):
 
 
 def commands(results):
-    return table(['drives', 'load', 'velocities', 'median', '99 %', 'longest', 'without a frame', 'host wakes up late by (99 %)'],
-                 [[one['inverters'], one['load']] + latency(one['commands']) + [ms(one['wake_ups']['p99']) if one['wake_ups'] else '-']
-                  for one in results.get('commands', [])])
+    rows = [['virtual', one['inverters'], one['load'] + ', 1 read waits' * (one['load'] == 'full')] +
+            latency(one['commands']) + ['-'] for one in results.get('commands_virtual', [])]
+    rows += [['real', one['inverters'], one['load'] + ', 20 reads wait' * (one['load'] == 'full')] + latency(one['commands']) +
+             [ms(one['wake_ups']['p99']) if one['wake_ups'] else '-'] for one in results.get('commands', [])]
+    return table(['time', 'drives', 'load', 'velocities', 'median', '99 %', 'longest', 'without a frame',
+                  'host wakes up late by (99 %)'], rows)
 
 
 def cost(results):
@@ -177,7 +180,7 @@ SECTIONS = (('machine', 'Machine', machine), ('goals', 'Goals', goal_table), ('w
             ('refresh_virtual', 'Refresh, in virtual time', refresh_virtual),
             ('refresh_real', 'Refresh, in real time', refresh_real), ('map', 'Whole status in one exchange', whole_status),
             ('stops_virtual', 'Stops, in virtual time', stops_virtual), ('stops_real', 'Stops, in real time', stops_real),
-            ('dead', 'Dead drives, in virtual time', dead), ('commands', 'Velocities, in real time', commands),
+            ('dead', 'Dead drives, in virtual time', dead), ('commands', 'Velocities', commands),
             ('cost', 'What it costs the host', cost), ('others', 'Beside others on the same wire', others))
 
 

@@ -80,7 +80,7 @@ def resident(process):
 
 def buses(programs, scene, number, seconds):
     """So many nodes, each with its bus, in one graph: cycle of each, and what a node costs."""
-    wires = [SimulatedWire(programs, scene, realtime_priority=0) for _ in range(number)]
+    wires = [SimulatedWire(programs, scene, spin=0.0) for _ in range(number)]
     try:
         with Graph() as graph:
             nodes = [graph.node(programs, 'bus_%d' % index, wire) for index, wire in enumerate(wires, 1)]

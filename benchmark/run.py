@@ -103,7 +103,7 @@ def measure_commands(programs, _before, amounts):
     if not ros_graph.lacks_ros():
         found += [ros_graph.velocities(programs, scenes.Scene(inverters, 19200, 'omron_mx2'), amounts.velocities)
                   for inverters in numbers]
-    return {'commands': found}
+    return {'commands': found, 'commands_virtual': in_virtual_time.velocities(programs, amounts.velocities)}
 
 
 def measure_cost(programs, before, amounts):

@@ -18,7 +18,7 @@ struct Scene
   unsigned baud = 19200;
   std::string drive = "omron_mx2";  ///< or toshiba_vfs15, with its block selected
   double reply_delay = 0.005;  ///< [s] from the end of a request to its reply, the silence of 3.5 characters included
-  std::string keys;            ///< further lines of the scan list
+  bool mapped = false;         ///< MX2: its register map is set, and its owner allows its use
 };
 
 /// Silence that Modbus RTU asks for before a frame, 8N1 [s].

@@ -13,7 +13,7 @@ import traces
 class SimulatedWire:
     """A scene being played. `with` ends it. Requests without a legal gap are served and counted (--gap ignore)."""
 
-    def __init__(self, programs, scene, realtime_priority=50):
+    def __init__(self, programs, scene, realtime_priority=50, spin=0.0001):
         self.scene = scene
         self.directory = tempfile.mkdtemp(prefix='bench_')
         os.chmod(self.directory, 0o755)  # LinuxCNC's programs read their files as somebody else
@@ -24,7 +24,7 @@ class SimulatedWire:
             stream.write(scenes.scan_list(scene, self.link))
         self.process = subprocess.Popen(
             [os.path.join(programs, 'simulated_bus'), '--scan-list', self.scan_list, '--link', self.link, '--trace',
-             self.trace, '--gap', 'ignore', '--spin', '0.0001', '--realtime-priority', str(realtime_priority)],
+             self.trace, '--gap', 'ignore', '--spin', str(spin), '--realtime-priority', str(realtime_priority)],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, bufsize=1)
         self.late = None  # [s] the wire's own error on average, once it has ended
         while not os.path.exists(self.link):

@@ -7,6 +7,7 @@
 //   virtual_benchmark refresh [--inverters 5] [--baud 19200] [--drive omron_mx2] [--seconds 60]
 //   virtual_benchmark dead    [--inverters 31] [--dead 3] ...     live ones beside dead ones, and the same without them
 //   virtual_benchmark stops   [--inverters 31] [--dead 3] [--fault silent|late|broken] [--instants 10000]
+//   virtual_benchmark velocities [--inverters 5] [--load idle|full] [--instants 1000]
 //   virtual_benchmark fifo    the same users, served in the order in which they come
 
 #include <algorithm>
@@ -37,6 +38,7 @@ struct Options
   double seconds = 60.0;
   unsigned dead = 0;
   std::string fault = "silent";
+  std::string load = "full";
   unsigned instants = 10000;
 };
 
@@ -240,10 +242,48 @@ class Users
 {
 public:
   Users(VirtualBus& bus, std::vector<bool> dead)
-    : bus_(bus), dead_(std::move(dead)), fresh_(dead_.size(), true), stopping_(dead_.size(), false)
+    : bus_(bus), dead_(std::move(dead)), fresh_(dead_.size(), true), held_(dead_.size(), false)
   {
     tick();
     read();
+  }
+
+  /// Nobody sends anything from now on, except what velocity() and stop() do.
+  void rest()
+  {
+    held_.assign(held_.size(), true);
+    reading_ = false;
+  }
+
+  /// [s] from a velocity at a random instant to the first byte of a frame that writes it; -1: none within 10 s.
+  double velocity()
+  {
+    std::uniform_real_distribution<double> pause(0.0, 0.5);
+    const std::size_t index = anyLive();
+    const bool held = held_[index];
+    held_[index] = true;
+    bus_.run(0.4);  // the velocity before it has been written
+    bus_.clearFrames();
+    ++sent_;
+    TimePoint called = TimePoint::max();
+    bus_.at(pause(random_), [&] {
+      called = bus_.now();
+      bus_.command(index, 30.0 + 0.1 * (sent_ % 97));
+    });
+    const simulation::Bytes head{ static_cast<std::uint8_t>(index + 1), 0x10, 0, 0 };
+    double delay = -1.0;
+    bus_.runUntil(10.5, [&] {
+      for (const simulation::FrameRecord& frame : bus_.frames())
+      {
+        if (delay < 0.0 && frame.time >= called && std::equal(head.begin(), head.end(), frame.bytes.begin()))
+        {
+          delay = toSeconds(frame.time - called);
+        }
+      }
+      return delay >= 0.0;
+    });
+    held_[index] = held;
+    return delay;
   }
 
   /// [s] from a stop call at a random instant to the first byte of its frame; -1: there was none.
@@ -256,11 +296,11 @@ public:
     bus_.clearFrames();
     bus_.at(pause(random_), [&] {
       called = bus_.now();
-      stopping_[index] = true;
+      held_[index] = true;
       answer = bus_.stop(index);
     });
     bus_.runUntil(PATIENCE_S, [&] { return answer && answer->has_value(); });
-    stopping_[index] = false;
+    held_[index] = false;
     fresh_[index] = true;
     for (const simulation::FrameRecord& frame : bus_.frames())
     {
@@ -289,7 +329,7 @@ private:
     ++round_;
     for (std::size_t index = 0; index < dead_.size(); ++index)
     {
-      if (!stopping_[index])
+      if (!held_[index])
       {
         // A stop locks: 0 opens it.
         bus_.command(index, fresh_[index] ? 0.0 : 10.0 + 0.1 * (round_ % 100));
@@ -301,7 +341,7 @@ private:
 
   void read()
   {
-    if (!box_ || box_->has_value())
+    if (reading_ && (!box_ || box_->has_value()))
     {
       box_ = bus_.readParameter(anyLive(), "F002");
     }
@@ -311,9 +351,11 @@ private:
   VirtualBus& bus_;
   std::vector<bool> dead_;
   std::vector<bool> fresh_;
-  std::vector<bool> stopping_;
+  std::vector<bool> held_;
+  bool reading_ = true;
   VirtualBus::Box box_;
   unsigned round_ = 0;
+  unsigned sent_ = 0;
   std::mt19937 random_{ 1 };
 };
 
@@ -331,6 +373,25 @@ void stops(const Options& options)
     delays.push_back(users.stop());
   }
   std::cout << Json().numbers("stops", delays).str() << std::endl;
+}
+
+void velocities(const Options& options)
+{
+  VirtualBus bus(scanList(options.scene, "/dev/virtual"));
+  warmUp(bus, options.scene.inverters);
+  Users users(bus, std::vector<bool>(options.scene.inverters, false));
+  bus.run(2.0);
+  if (options.load == "idle")
+  {
+    users.rest();
+    bus.run(10.0);
+  }
+  std::vector<double> delays;
+  for (unsigned instant = 0; instant < options.instants; ++instant)
+  {
+    delays.push_back(users.velocity());
+  }
+  std::cout << Json().numbers("velocities", delays).str() << std::endl;
 }
 
 /// The same users in front of one queue. As many instants as a tenth: each takes about a cycle of all that waits.
@@ -382,8 +443,9 @@ void fifo(const Options& options)
 Options readOptions(int argc, char** argv)
 {
   Options options;
-  po::options_description description("virtual_benchmark refresh|dead|stops|fifo");
-  description.add_options()("help", "this text")("what", po::value(&options.what), "refresh, dead, stops or fifo")(
+  po::options_description description("virtual_benchmark refresh|dead|stops|velocities|fifo");
+  description.add_options()("help", "this text")("what", po::value(&options.what),
+                                                 "refresh, dead, stops, velocities or fifo")(
       "inverters", po::value(&options.scene.inverters)->default_value(5), "drives on the bus")(
       "baud", po::value(&options.scene.baud)->default_value(19200), "baud rate, 8N1")(
       "drive", po::value(&options.scene.drive)->default_value("omron_mx2"), "omron_mx2 or toshiba_vfs15")(
@@ -391,6 +453,7 @@ Options readOptions(int argc, char** argv)
       "seconds", po::value(&options.seconds)->default_value(60.0), "of bus time to watch")(
       "dead", po::value(&options.dead)->default_value(0), "drives that do not answer")(
       "fault", po::value(&options.fault)->default_value("silent"), "silent, late or broken: how they do not")(
+      "load", po::value(&options.load)->default_value("full"), "idle or full: what users do beside a velocity")(
       "instants", po::value(&options.instants)->default_value(10000), "stops at random instants");
   po::positional_options_description words;
   words.add("what", 1);
@@ -416,7 +479,7 @@ int main(int argc, char** argv)
   {
     const Options options = readOptions(argc, argv);
     const std::vector<std::pair<std::string, void (*)(const Options&)>> all{
-      { "refresh", refresh }, { "dead", deadDrives }, { "stops", stops }, { "fifo", fifo }
+      { "refresh", refresh }, { "dead", deadDrives }, { "stops", stops }, { "velocities", velocities }, { "fifo", fifo }
     };
     for (const auto& [what, play] : all)
     {
@@ -426,7 +489,7 @@ int main(int argc, char** argv)
         return EXIT_SUCCESS;
       }
     }
-    throw std::runtime_error("one of refresh, dead, stops, fifo, not '" + options.what + "'");
+    throw std::runtime_error("one of refresh, dead, stops, velocities, fifo, not '" + options.what + "'");
   }
   catch (const std::exception& error)
   {

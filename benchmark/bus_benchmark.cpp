@@ -20,6 +20,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -197,6 +198,18 @@ void playStops(const Options& options)
   std::cout << json.str() << std::endl;
 }
 
+/// The first frame since then that begins so; nothing: none within about \p limit milliseconds.
+std::optional<TimePoint> waitFor(const FrameLog& frames, const simulation::Bytes& head, TimePoint since, int limit)
+{
+  std::optional<TimePoint> first;
+  for (int wait = 0; wait < limit && !first; ++wait)
+  {
+    pass(0.001);
+    first = frames.first(head, since);
+  }
+  return first;
+}
+
 /// [s] from a velocity message to the first byte of a frame that writes it.
 void playCommands(const Options& options)
 {
@@ -219,21 +232,23 @@ void playCommands(const Options& options)
   for (unsigned call = 0; call < options.calls; ++call)
   {
     const std::size_t index = random() % options.scene.inverters;
+    const simulation::Bytes head{ static_cast<std::uint8_t>(index + 1), 0x10, 0, 0 };
+    live.wire.frames.clear();
+    const TimePoint held = Clock::now();
     load.hold(index);
-    pass(full ? 0.3 : pause(random));  // its last velocity has been written
+    pass(pause(random));
+    if (full)
+    {
+      // The one before it is written first, or the new one would only take its place in the queue.
+      waitFor(live.wire.frames, head, held, 2000);
+    }
     live.wire.frames.clear();
     bus::VelocityCommand command;
     command.targets = { { index, 30.0 + 0.1 * (call % 50) } };
     command.publisher.name = "/benchmark";
     const TimePoint begin = Clock::now();
     live.driver->command(command);
-    const simulation::Bytes head{ static_cast<std::uint8_t>(index + 1), 0x10, 0, 0 };
-    std::optional<TimePoint> first;
-    for (int wait = 0; wait < 2000 && !first; ++wait)
-    {
-      pass(0.001);
-      first = live.wire.frames.first(head, begin);
-    }
+    const auto first = waitFor(live.wire.frames, head, begin, 10000);
     delays.push_back(first ? toSeconds(*first - begin) : -1.0);
     if (full)
     {

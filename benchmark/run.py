@@ -35,7 +35,7 @@ class Amounts:
         self.real_stops = 50 if quick else 1000
         self.real_dead = (0,) if quick else (0, 3, 15)
         self.real_inverters = 5 if quick else 31
-        self.velocities = 20 if quick else 300
+        self.velocities = 20 if quick else 200
         self.cost_seconds = 5 if quick else 30
         self.graphs = (1,) if quick else (1, 4, 8)
         self.others_seconds = 3 if quick else 15
@@ -166,7 +166,7 @@ def main():
     parser.add_argument('--before-name', help='what that build is called')
     parser.add_argument('--output', required=True, help='JSON file; the pictures go beside it')
     parser.add_argument('--from', dest='source', help='measure nothing: tables and pictures of this JSON file')
-    parser.add_argument('--quick', action='store_true', help='a few minutes instead of an hour')
+    parser.add_argument('--quick', action='store_true', help='some minutes instead of more than an hour')
     parser.add_argument('--only', action='append', choices=list(PARTS), help='only this part; may be given several times')
     parser.add_argument('--write-docs', action='store_true', help='fill docs/performance.md, its pictures and JSON')
     arguments = parser.parse_args()

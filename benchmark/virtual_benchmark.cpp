@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -261,8 +262,14 @@ public:
     std::uniform_real_distribution<double> pause(0.0, 0.5);
     const std::size_t index = anyLive();
     const bool held = held_[index];
+    bus_.clearFrames();
     held_[index] = true;
-    bus_.run(0.4);  // the velocity before it has been written
+    const TimePoint begin = bus_.now();
+    if (!held)
+    {
+      // The one before it is written first, or the new one would only take its place in the queue.
+      bus_.runUntil(5.0, [&] { return write(index, begin).has_value(); });
+    }
     bus_.clearFrames();
     ++sent_;
     TimePoint called = TimePoint::max();
@@ -270,20 +277,10 @@ public:
       called = bus_.now();
       bus_.command(index, 30.0 + 0.1 * (sent_ % 97));
     });
-    const simulation::Bytes head{ static_cast<std::uint8_t>(index + 1), 0x10, 0, 0 };
-    double delay = -1.0;
-    bus_.runUntil(10.5, [&] {
-      for (const simulation::FrameRecord& frame : bus_.frames())
-      {
-        if (delay < 0.0 && frame.time >= called && std::equal(head.begin(), head.end(), frame.bytes.begin()))
-        {
-          delay = toSeconds(frame.time - called);
-        }
-      }
-      return delay >= 0.0;
-    });
+    bus_.runUntil(10.5, [&] { return write(index, called).has_value(); });
     held_[index] = held;
-    return delay;
+    const auto first = write(index, called);
+    return first ? toSeconds(*first - called) : -1.0;
   }
 
   /// [s] from a stop call at a random instant to the first byte of its frame; -1: there was none.
@@ -313,6 +310,21 @@ public:
   }
 
 private:
+  /// The first frame since then that writes a frequency.
+  std::optional<TimePoint> write(std::size_t index, TimePoint since) const
+  {
+    const simulation::Bytes head{ static_cast<std::uint8_t>(index + 1), 0x10, 0, 0 };
+    for (const simulation::FrameRecord& frame : bus_.frames())
+    {
+      if (frame.source == simulation::FrameRecord::Source::Master && frame.time >= since &&
+          std::equal(head.begin(), head.end(), frame.bytes.begin()))
+      {
+        return frame.time;
+      }
+    }
+    return std::nullopt;
+  }
+
   std::size_t anyLive()
   {
     std::uniform_int_distribution<std::size_t> any(0, dead_.size() - 1);

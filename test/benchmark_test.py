@@ -11,6 +11,7 @@ sys.path.insert(0, os.path.join(ROOT, 'benchmark'))
 
 import figures  # noqa: E402
 import goals  # noqa: E402
+import masters  # noqa: E402
 import pictures  # noqa: E402
 import report  # noqa: E402
 import scenes  # noqa: E402
@@ -104,6 +105,15 @@ class Traces(unittest.TestCase):
 
         self.assertAlmostEqual(traces.delay_to(self.frames, 1000.7, stop), 0.03)
         self.assertEqual(traces.delay_to(self.frames, 1000.8, stop), -1.0)
+
+
+    def test_a_stop_of_a_vf_s15_in_all_its_shapes(self):
+        stopped = masters.vfs15_stopped(1)
+        stops = ('0106FA00C000', '01101870000204C0000000', '0117187500051870000204C0000000', '0106FA008000')
+        others = ('0206FA00C000', '0106FA00C400', '0106FA01C000', '01101870000204C40003E8', '0117187500051870000204C4000000',
+                  '010318750005', '0106FA00')
+        self.assertEqual([stopped(bytes.fromhex(text) + b'..') for text in stops], [True] * len(stops))
+        self.assertEqual([stopped(bytes.fromhex(text)) for text in others], [False] * len(others))
 
 
 class Scenes(unittest.TestCase):

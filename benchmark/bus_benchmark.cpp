@@ -244,7 +244,7 @@ void playCommands(const Options& options)
     }
     live.wire.frames.clear();
     bus::VelocityCommand command;
-    command.targets = { { index, 30.0 + 0.1 * (call % 50) } };
+    command.targets = { { index, 30.0 + 0.05 * (call % 400) } };
     command.publisher.name = "/benchmark";
     const TimePoint begin = Clock::now();
     live.driver->command(command);

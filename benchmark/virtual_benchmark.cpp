@@ -275,7 +275,7 @@ public:
     TimePoint called = TimePoint::max();
     bus_.at(pause(random_), [&] {
       called = bus_.now();
-      bus_.command(index, 30.0 + 0.1 * (sent_ % 97));
+      bus_.command(index, 30.0 + 0.05 * (sent_ % 400));
     });
     bus_.runUntil(10.5, [&] { return write(index, called).has_value(); });
     held_[index] = held;

@@ -25,7 +25,7 @@ public:
   {
   }
 
-  /// Sends the frame as it is and waits until the line is at rest. @return everything that came back
+  /// Sends the frame as it is, waits until the line is at rest, and returns everything that came back.
   std::string askRaw(const std::string& hex)
   {
     bus.send(*fromHex(hex), now);
@@ -46,7 +46,7 @@ public:
     return toHex(reply);
   }
 
-  /// CompoWay/F: packs the body of a request. @return the body of the reply, or what came instead as hexadecimal text
+  /// CompoWay/F: packs the body of a request and returns the body of the reply, or what came instead as hexadecimal text.
   std::string askBody(const std::string& body)
   {
     const std::string reply = askRaw(toHex(compowayFrame(body)));
@@ -55,7 +55,7 @@ public:
     return good ? compowayBody(*frame) : reply;
   }
 
-  /// @return all that comes out until nothing is under way any more
+  /// All that comes out until nothing is under way any more.
   std::string listen()
   {
     Bytes heard;

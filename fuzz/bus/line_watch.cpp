@@ -47,6 +47,7 @@ void LineWatch::sending(TimePoint now, const simulation::Bytes& frame)
   checks_.bounded_velocities.check(now);
   checkCommandWords(now);
   checks_.lowest_class.check(now);
+  checks_.slow_reads.begins(now);
   checks_.values.begins(now);
 }
 
@@ -114,6 +115,7 @@ void LineWatch::endExchange(TimePoint now)
   checks_.bounded_velocities.ended();
   checks_.supervision.ended(now);
   checks_.probes.ended(now);
+  checks_.slow_reads.ended(now);
   checks_.values.ended(now);
 }
 
@@ -161,6 +163,7 @@ void LineWatch::takeAnswer(TimePoint now, std::size_t index, const ReplyFacts& r
 {
   checks_.bounded_velocities.answered(index);
   checks_.values.answered(now, index, reply);
+  checks_.slow_reads.answered(now, index, reply);
   checks_.liveness.answered(now, index, reply);
   checks_.lowest_class.answered(index);
   checks_.confirmed_stops.answered(now, index, reply);

@@ -39,6 +39,7 @@ struct InverterFacts
   double own_delay = 0.0;         ///< [s] of the drive itself before a reply: C078, F805
   double drive_timeout = 0.0;     ///< [s] C077, F803, Cn-27; 0: none
   bool block = false;             ///< VF-S15 whose block read and write are selected
+  bool fed_by_word = false;       ///< its profile says that only the command word feeds its own time-out
   double max_velocity = 0.0;      ///< [user's unit] 0: the profile's
   double min_velocity = 0.0;      ///< [user's unit]
   bool saturates = false;         ///< limit: saturate; has a max_velocity then
@@ -61,6 +62,7 @@ struct Scene
   bool one_brand = true;  ///< every inverter has the same profile
   double interval = 0.0;  ///< [s]
   unsigned idle_divisor = 1;
+  double slow_interval = 1.0;  ///< [s] 0: no slow value is read
   int retries = 1;
   unsigned offline_after = 3;
   std::vector<InverterFacts> inverters;
@@ -75,6 +77,8 @@ struct Scene
   double longestSilence() const;
   /// [s] after which an inverter without a complete status is offline (contract, 8.15), with what a busy bus adds.
   double longestBlindness() const;
+  /// A slow value is read at least so often on a bus without losses.
+  Duration longestSlowPeriod() const;
   /// Silence before a request.
   Duration gap() const;
 };

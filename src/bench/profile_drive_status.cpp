@@ -223,7 +223,7 @@ void ProfileDrive::describeMotor(simulation::KeyValues& values) const
 {
   values.emplace_back("model", "profile");
   values.emplace_back("profile", profile_->name);
-  appendMotor(motor_, values);
+  appendMotor(motor_, motor_.current(), values);
   values.emplace_back("run_command", runCommand() ? "1" : "0");
   values.emplace_back("tripped", tripped_ ? "1" : "0");
   values.emplace_back("trip", std::to_string(tripped_ ? trip_ : 0));

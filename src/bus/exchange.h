@@ -13,46 +13,36 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the exchange in flight is for: decides which activity hears of its end.
-enum class Purpose
-{
-  StopFrame,
-  Broadcast,
-  Velocity,
-  Job,
-  Refresh,
-  /// Any read that is allowed now, so that the drive's own time-out does not pass; its answer is not used.
-  KeepAlive,
-  Probe,
-  Setting,
-  Release
-};
-
 /// The exchange in flight, as the activity that composed it wants it.
 struct InFlight
 {
   Pick pick;
-  Purpose purpose = Purpose::Refresh;
   std::size_t inverter = 0;
   wire::Request request;
+  /// Time that it occupies the line if it is answered at once.
+  Duration cost{ 0 };
   /// A loop-back that makes sure that no late reply is on its way; the real request follows.
   bool resync = false;
   /// The request is a loop-back, as a probe or for resync.
   bool loopback = false;
   /// A stop's write that a late reply to an earlier request could answer.
   bool may_be_late = false;
+  /// Takes from the share of the slow values (contract, 8.3).
+  bool slow = false;
+  /// A write that also reads the status (17H).
+  bool with_status = false;
+  /// Repeats command words that the drive has confirmed, and is no read.
+  bool keeps_alive = false;
   /// A velocity's frame that may set RUN or raise the frequency.
   bool moves = false;
   Write write;
-  CommandId job = 0;
 };
 
 /// The exchange of a pick; what is to be sent is still missing.
-inline InFlight exchangeFor(const Pick& pick, Purpose purpose)
+inline InFlight exchangeFor(const Pick& pick)
 {
   InFlight current;
   current.pick = pick;
-  current.purpose = purpose;
   current.inverter = pick.inverter;
   return current;
 }

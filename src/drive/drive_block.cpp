@@ -6,7 +6,6 @@
 
 #include "drive/codec/codec.h"
 #include "drive/codec/read_plan.h"
-#include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
 #include "util/text.h"
 
@@ -140,7 +139,17 @@ wire::Request Drive::writeChosen(std::uint8_t station, const std::vector<Word>& 
 
 wire::Request Drive::writeAndRead(std::uint8_t station, const std::vector<Word>& words, const ReadBlock& block) const
 {
-  return request(station, encodeReadWrite(block, profile_.block->write.address, inSlotOrder(*profile_.block, words)));
+  if (profile_.block)
+  {
+    return request(station, encodeReadWrite(block, profile_.block->write.address, inSlotOrder(*profile_.block, words)));
+  }
+  const Item& item = profile_.points.at(words.front().first).item;
+  const std::uint32_t raw = words.front().second;
+  const auto high = static_cast<std::uint16_t>(raw >> 16U);
+  const auto low = static_cast<std::uint16_t>(raw & 0xFFFFU);
+  return request(station, encodeReadWrite(block, item.address,
+                                          item.size == 2 ? std::vector<std::uint16_t>{ high, low }
+                                                         : std::vector<std::uint16_t>{ low }));
 }
 
 std::vector<std::pair<std::string, std::string>> Drive::chosenValues(const ReadBlock& block, const wire::Bytes& reply,

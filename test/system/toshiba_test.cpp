@@ -155,20 +155,83 @@ TEST(Toshiba, aFittingBlockBringsTheStatusInOneReadAndTheCommandInOneFrame)
   EXPECT_EQ(bus.count(WRITE_COMMAND), 0U);
 }
 
-TEST(Toshiba, repeatsTheConfirmedWordsInEveryRefreshWhileTheyAreInForce)
+TEST(Toshiba, aSettledCommandIsReadByThePlainReadAndANewOneGoesWithTheStatus)
 {
   VirtualBus bus(BLOCK);
   settle(bus);
   bus.stream(0, 20.0, 0.1, 20.0);
   bus.run(19.0);
-  EXPECT_GT(bus.count("01 17 18 75 00 05 18 70 00 02 04 C4 00 07 D0"), 100U);
+  EXPECT_EQ(bus.count(BLOCK_READ_WRITE), 0U) << "nothing is to be written";
+  EXPECT_GT(bus.count(BLOCK_READ), 100U);
   EXPECT_NEAR(*bus.status(0).monitor.output_frequency, 20.0, 0.01);
   EXPECT_NEAR(*bus.status(0).monitor.output_current, bus.motor("pump", "current"), 0.02);
   bus.clearFrames();
   bus.run(0.95);
   bus.stream(0, 25.0, 0.1, 1.0);
-  bus.run(1.0);
-  EXPECT_GE(bus.count("01 17 18 75 00 05 18 70 00 02 04 C4 00 09 C4"), 1U);
+  ASSERT_TRUE(bus.runUntil(1.0, [&] { return bus.count("01 17 18 75 00 05 18 70 00 02 04 C4 00 09 C4") > 0; }));
+  ASSERT_EQ(bus.requests().back().substr(0, 5), "01 17");
+  const auto& frames = bus.frames();
+  const auto sent = std::find_if(frames.rbegin(), frames.rend(), [](const simulation::FrameRecord& frame) {
+    return frame.source == simulation::FrameRecord::Source::Master;
+  });
+  EXPECT_GT(bus.status(0).stamp, sent->time) << "the status came with it";
+  bus.run(0.9);
+  EXPECT_EQ(bus.count(BLOCK_READ_WRITE), 1U);
+}
+
+TEST(Toshiba, aLostWriteWithAReadIsFollowedByAPlainReadThenByPlainWrites)
+{
+  VirtualBus bus(BLOCK);
+  settle(bus);
+  bus.stream(0, 20.0, 0.1, 3.0);
+  bus.run(3.05);
+  bus.clearFrames();
+  bus.world("pump lost_request writes count 1");
+  bus.stream(0, 25.0, 0.1, 2.0);
+  bus.run(2.0);
+  std::vector<std::string> frames = bus.requests();
+  const auto lost = std::find_if(frames.begin(), frames.end(),
+                                 [](const std::string& text) { return text.compare(0, 5, "01 17") == 0; });
+  ASSERT_NE(lost, frames.end());
+  const auto read = std::find_if(lost + 1, frames.end(), [](const std::string& text) {
+    return text.compare(0, std::string(BLOCK_READ).size(), BLOCK_READ) == 0;
+  });
+  const auto write = std::find_if(lost + 1, frames.end(),
+                                  [](const std::string& text) { return text.compare(0, 11, WRITE_FREQUENCY) == 0; });
+  ASSERT_NE(write, frames.end());
+  EXPECT_LT(read - frames.begin(), write - frames.begin());
+  EXPECT_EQ(bus.count("01 17"), 1U);
+  EXPECT_EQ(*write, "01 06 FA 01 09 C4");
+}
+
+/// A drive whose own time-out is fed by its command word only.
+std::string fedByCommandWord(const std::string& yaml)
+{
+  std::string text = yaml;
+  text.replace(text.find("toshiba_vfs15}"), 14, "toshiba_vfs15, overrides: {feeds: command_word}}");
+  const std::size_t parameters = text.find("parameters: {");
+  return text.insert(parameters + 13, "F803: 2, F804: 1, ");
+}
+
+TEST(Toshiba, whereOnlyTheCommandWordFeedsTheDriveItIsRepeatedBeforeItsTimeOut)
+{
+  VirtualBus bus(fedByCommandWord(BLOCK));
+  settle(bus);
+  bus.run(10.0);
+  // At rest the stop word.
+  const std::size_t stops = bus.count("01 06 FA 00 C0 00");
+  EXPECT_GE(stops, 5U);
+  EXPECT_LE(stops, 12U);
+  bus.stream(0, 20.0, 0.1, 20.0);
+  bus.run(5.0);
+  bus.clearFrames();
+  bus.run(10.0);
+  const std::size_t repeats =
+      bus.count("01 17 18 75 00 05 18 70 00 02 04 C4 00 07 D0") + bus.count("01 06 FA 00 C4 00");
+  EXPECT_GE(repeats, 5U);
+  EXPECT_LE(repeats, 12U) << "as a keep-alive, not in every refresh";
+  EXPECT_EQ(bus.count("01 06 FA 00 C0 00"), 0U);
+  EXPECT_FALSE(bus.status(0).locked);
 }
 
 TEST(Toshiba, afterAStopNoRefreshGivesRunBack)
@@ -243,7 +306,7 @@ TEST(Toshiba, aBrownOutUnderAChangingVelocityGivesNoRunBackEither)
 
 TEST(Toshiba, aLostExchangeEndsTheProofOfRunUntilTheDriveHasShownIt)
 {
-  VirtualBus bus(BLOCK);
+  VirtualBus bus(fedByCommandWord(BLOCK));
   settle(bus);
   bus.stream(0, 20.0, 0.1, 10.0);
   bus.run(3.0);
@@ -252,7 +315,9 @@ TEST(Toshiba, aLostExchangeEndsTheProofOfRunUntilTheDriveHasShownIt)
   bus.clearFrames();
   bus.run(3.0);
   const auto requests = bus.requests();
-  const auto repeats = [](const std::string& text) { return text.compare(0, 5, "01 17") == 0; };
+  const auto repeats = [](const std::string& text) {
+    return text.compare(0, 5, "01 17") == 0 || text == "01 06 FA 00 C4 00";
+  };
   const auto proof = std::find(requests.begin(), requests.end(), "01 03 FA 00 00 01");
   const auto first = std::find_if(requests.begin(), requests.end(), repeats);
   ASSERT_NE(first, requests.end()) << "the words are repeated again once RUN is proven";

@@ -56,6 +56,13 @@ void RunFrames::checkRepeat(TimePoint now, std::size_t index) const
     fail(now, "no RUN by a refresh or a repeat",
          observed_.scene.title(index) + ": RUN is repeated though the last exchange has not shown it in force");
   }
+  const bool settled = exchange.repeats_run && inverter.words.settled && exchange.facts.set_hertz &&
+                       inverter.words.set_answered == exchange.facts.set_hertz;
+  if (exchange.facts.with_read && settled && !observed_.scene.inverters[index].fed_by_word)
+  {
+    fail(now, "17H only where there is something to write",
+         observed_.scene.title(index) + ": a settled command is told again");
+  }
   const bool counts = !exchange.repeats_run && inverter.order.valid && !exchange.precedes_command;
   if (counts && inverter.words.run_copies > observed_.scene.retries)
   {

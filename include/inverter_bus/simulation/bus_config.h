@@ -60,6 +60,7 @@ struct SerialOptions
 ///     simulation:
 ///       belt_1: {model: omron_mx2, parameters: {C077: 1.0}, turnaround: 0.005, start_up_time: 1.0, reset_silence: 1.0,
 ///                eeprom_time: 0.3, load: 0.3, restart_after_timeout: false, self_clearing_coils: false,
+///                mapped_reads_in_blocks: true, reserved_readable: true,
 ///                baud_rate: 9600, parity: even, data_bits: 8, stop_bits: 1, station: 4}
 ///       pump: {model: teco_7200ma, reverse_word: 2, monitor_base: 0x0020}
 ///       fan: {model: omron_3g3je, operation_codes: {run_forward: "1101"}, area_1_readable: true}
@@ -67,19 +68,19 @@ struct SerialOptions
 ///
 /// `model` is needed where `drive` is not one of driveModels(); a path as `drive` is played as "profile". Serial settings and
 /// `station` are what the drive is really set to, right or wrong. A name that is not in the scan list is a further drive.
-/// @throws ConfigError
+/// \throws ConfigError, in one line: place, value, what is allowed
 BusConfig busConfigFromParameters(const config::Value& parameters, const SerialOptions& drives_serial = {});
 
-/// The same from the text of a file. @throws ConfigError, also for what is no YAML
+/// The same from the text of a file. \throws ConfigError, also for what is no YAML
 BusConfig busConfigFromText(const std::string& yaml);
 
 /// Names that `drive` and `model` know.
 std::vector<std::string> driveModels();
 
-/// What the drive's bus speaks. @throws ConfigError for an unknown model
+/// What the drive's bus speaks. \throws ConfigError for an unknown model
 Protocol protocolOf(const DriveConfig& config);
 
-/// @throws ConfigError for an unknown model, and for what the drive itself refuses
+/// A drive as \p config describes it. \throws ConfigError for an unknown model, and for what the drive itself refuses
 std::unique_ptr<SimulatedDrive> makeDrive(const DriveConfig& config);
 }  // namespace simulation
 }  // namespace inverter_bus

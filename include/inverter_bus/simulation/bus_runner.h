@@ -27,30 +27,31 @@ namespace simulation
 class BusRunner
 {
 public:
-  /// @param bus must outlive the runner and is used by nobody else while run() runs; its start should be now
-  /// @throws std::runtime_error when terminal or link can't be made
+  /// Opens the terminal under the name \p link. \p bus must outlive the runner, is used by nobody else while run() runs, and
+  /// should start now. \throws std::runtime_error when terminal or link can't be made
   BusRunner(SimulatedBus& bus, const std::string& link);
   ~BusRunner();
   BusRunner(const BusRunner&) = delete;
   BusRunner& operator=(const BusRunner&) = delete;
 
-  /// Also reads commands, one a line, from this descriptor; its end ends nothing. Call it before run().
-  /// @param answer gets the answer to each command
+  /// Also reads commands, one a line, from this descriptor; its end ends nothing. \p answer gets the answer to each, in the
+  /// thread of run(). Call it before run().
   void readCommands(int descriptor, std::function<void(const std::string&)> answer);
 
   /// The parity that the client is taken to use, whatever its terminal shows (see terminal_settings.h). Call it before run().
   void assumeParity(Parity parity);
 
-  /// The last part of each wait is spent looking at the clock, which wakes up late by less than the kernel's timers, and
-  /// costs so much of a core. Call it before run(). @param lead [s] 0: never
+  /// The last \p lead seconds of each wait are spent looking at the clock, which is less late than the kernel's timers and
+  /// costs so much of a core; 0: never. Call it before run().
   void spin(double lead);
 
-  /// Returns after stop(). @param realtime_priority > 0: SCHED_FIFO for the calling thread, where that is permitted
+  /// Returns after stop(). \p realtime_priority 1 to 99: SCHED_FIFO for the calling thread, where that is permitted; 0: as
+  /// the thread is.
   void run(int realtime_priority = 0);
   void stop() noexcept;
   std::string command(const std::string& line);
   const PseudoTerminal& terminal() const;
-  /// How late the wire was, so far. After run().
+  /// How late the wire was; 0 before run(). Call it after run().
   const Punctuality& punctuality() const;
 
 private:

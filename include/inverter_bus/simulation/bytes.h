@@ -15,11 +15,11 @@ namespace simulation
 {
 using Bytes = std::vector<std::uint8_t>;
 
-/// @return upper-case hexadecimal, separated by blanks ("01 05 00 00 FF 00 8C 3A")
+/// Upper-case hexadecimal, separated by blanks ("01 05 00 00 FF 00 8C 3A")
 std::string toHex(const Bytes& bytes);
 
-/// Reads hexadecimal with or without blanks between the bytes.
-/// @return nothing when a character is no hexadecimal digit or a byte is only half there
+/// Reads hexadecimal with or without blanks between the bytes. Nothing where a character is no hexadecimal digit or a byte
+/// is only half there.
 std::optional<Bytes> fromHex(const std::string& text);
 }  // namespace simulation
 }  // namespace inverter_bus

@@ -25,13 +25,13 @@ enum class Protocol
   CompowayF
 };
 
-/// @return as the scan list names it: "modbus_rtu"
+/// As the scan list names it: "modbus_rtu".
 inline const char* nameOf(Protocol protocol)
 {
   return protocol == Protocol::ModbusRtu ? "modbus_rtu" : "compoway_f";
 }
 
-/// @return 'N', 'E' or 'O', as in 8N1
+/// 'N', 'E' or 'O', as in 8N1.
 inline char letterOf(Parity parity)
 {
   return parity == Parity::None ? 'N' : (parity == Parity::Even ? 'E' : 'O');
@@ -71,8 +71,8 @@ struct LineSettings
     return baud_rate > 19200 ? seconds(0.00175) : characterTime() * 7 / 2;
   }
 
-  /// @return true when a receiver with these settings makes the same bytes of what is sent with those of `sender`: else its
-  /// bytes are garbage with framing and parity errors, and no frame comes out of them. Stop bits are only silence to a receiver.
+  /// A receiver with these settings makes the same bytes of what is sent with those of \p sender; else what it hears is
+  /// garbage with framing and parity errors, and no frame comes out of them. Stop bits are only silence to a receiver.
   bool understands(const LineSettings& sender) const
   {
     return baud_rate == sender.baud_rate && parity == sender.parity && data_bits == sender.data_bits &&

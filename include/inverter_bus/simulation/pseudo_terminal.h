@@ -18,15 +18,15 @@ namespace simulation
 class PseudoTerminal
 {
 public:
-  /// Opens the terminal. @param link an older link of that name is replaced
-  /// @param settings what it is set to until a client sets it
-  /// @throws std::runtime_error when there is no terminal to be had, or the link can't be made; the text says why
+  /// Opens the terminal under the name \p link; an older link of that name is replaced. \p settings are what it is set to
+  /// until a client sets it. \throws std::runtime_error when there is no terminal to be had, or the link can't be made; the
+  /// text says why
   explicit PseudoTerminal(const std::string& link, const LineSettings& settings = LineSettings());
   ~PseudoTerminal();
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
 
-  /// As after plugging the adapter in: a new terminal under the same link. @throws as the constructor
+  /// As after plugging the adapter in: a new terminal under the same link. \throws as the constructor
   void open();
   /// As after pulling it out: link and terminal are gone, clients get a hang-up.
   void close();
@@ -36,7 +36,7 @@ public:
   const std::string& path() const;  ///< the terminal's own name
   const std::string& link() const;
 
-  /// @return what clients have written, empty when nothing waits
+  /// What clients have written; empty where nothing waits. Never blocks.
   Bytes read();
   /// Never blocks: what nobody reads and doesn't fit any more is lost, as on a wire.
   void write(const Bytes& bytes);

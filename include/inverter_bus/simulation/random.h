@@ -27,7 +27,7 @@ public:
     return value ^ (value >> 31U);
   }
 
-  /// @return 0 ... limit - 1; limit must not be 0
+  /// 0 to \p limit - 1; \p limit must not be 0.
   std::uint64_t below(std::uint64_t limit)
   {
     return next() % limit;
@@ -38,7 +38,7 @@ public:
     return static_cast<std::uint8_t>(next() & 0xFFU);
   }
 
-  /// @return 1 ... 127: what damages a byte for certain when XORed onto it, on a line with 7 data bits too
+  /// 1 to 127: what damages a byte for certain when XORed onto it, on a line with 7 data bits too.
   std::uint8_t damage()
   {
     return static_cast<std::uint8_t>(1U + below(127U));

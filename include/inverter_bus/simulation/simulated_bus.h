@@ -34,28 +34,25 @@ namespace simulation
 class SimulatedBus
 {
 public:
-  /// @param options `settings` is taken from the config
-  /// @throws ConfigError for what a drive refuses
+  /// The `settings` of \p options are taken from \p config. \throws ConfigError for what a drive refuses
   SimulatedBus(const BusConfig& config, LineOptions options, TimePoint start);
 
-  /// @name The master's end of the line
-  /// @{
+  // The master's end of the line.
   void send(const Bytes& bytes, TimePoint now);
   /// The master's port is set otherwise than the scan list says.
   void setMaster(const LineSettings& settings, TimePoint now);
   std::optional<TimePoint> nextEvent() const;
   void advance(TimePoint now);
   std::vector<Delivery> takeOutput(TimePoint now);
-  /// @return false while the adapter is unplugged (`bus unplug`): whoever owns a port closes it then
+  /// False while the adapter is unplugged (`bus unplug`): whoever owns a port closes it then.
   bool pluggedIn() const;
-  /// @}
 
-  /// Runs one command (grammar: bus_commands.h, and the command `help`).
-  /// @return one line: "ok ..." or "error: ... (what is allowed)"; empty for an empty line
+  /// Runs one command (grammar: bus_commands.h, and the command `help`). The answer is one line, "ok ..." or
+  /// "error: ... (what is allowed)", and empty for an empty line.
   std::string command(const std::string& line, TimePoint now);
 
   SimulatedLine& line();
-  /// @return nullptr when there is none of that name
+  /// Null where there is none of that name.
   SimulatedDrive* drive(const std::string& name);
   const std::vector<std::unique_ptr<SimulatedDrive>>& drives() const;
   TimePoint start() const;
@@ -64,10 +61,10 @@ public:
   /// The last frames, oldest first (at most 200).
   const std::deque<FrameRecord>& frames() const;
 
-  /// @param until when it is plugged in again; nothing: by plugIn()
+  /// Pulls the adapter out \p until it is plugged in again; nothing: until plugIn().
   void unplug(std::optional<TimePoint> until, TimePoint now);
   void plugIn(TimePoint now);
-  /// @param until when the line is whole again; nothing: by cutLine(false, ...)
+  /// \p until when the line is whole again; nothing: until cutLine(false, ...).
   void cutLine(bool cut, std::optional<TimePoint> until, TimePoint now);
 
 private:

@@ -56,7 +56,7 @@ using KeyValues = std::vector<std::pair<std::string, std::string>>;
 class SimulatedDrive
 {
 public:
-  /// @param start the drive has been on long enough to answer at this time
+  /// At \p start the drive has been on long enough to answer. \p seed of all its chance.
   SimulatedDrive(std::string name, int station, std::uint64_t seed, TimePoint start);
   virtual ~SimulatedDrive();
   SimulatedDrive(const SimulatedDrive&) = delete;
@@ -65,93 +65,88 @@ public:
   const std::string& name() const;
   int station() const;
 
-  /// A complete frame was heard; called at its end (Modbus: of its 3.5-character silence).
-  /// @return the reply, or nothing (other station, broadcast, damaged, deaf, fault)
+  /// A complete frame was heard; called at its end (Modbus: of its 3.5-character silence). The reply, or nothing: another
+  /// station, a broadcast, damaged, deaf, a fault.
   std::optional<Answer> handle(const Bytes& frame, TimePoint now);
 
   /// Moves motor, watchdog and all other timers to `now`, exactly, however far ahead that is.
   void advance(TimePoint now);
 
-  /// @return true when the frame is meant for this drive: its station number or a broadcast that it takes part in
+  /// The frame is meant for this drive: it bears its station number, or is a broadcast that it takes part in.
   virtual bool addressedBy(const Bytes& frame) const = 0;
-  /// @return true for a complete frame with a right check sum
+  /// The frame is complete and its check sum right.
   virtual bool isWholeFrame(const Bytes& frame) const = 0;
-  /// @return the largest number that can be injected as an exception
+  /// The largest number that can be injected as an exception.
   virtual int largestException() const = 0;
 
-  /// @return false when the drive has no power or its connection to the bus is cut: a reply that it owes won't come
+  /// False while the drive has no power or its connection to the bus is cut: a reply that it owes won't come.
   bool canSend() const;
   bool powered() const;
   /// How the master talks from now on; until the first call exactly as the drive understands it.
   void setLine(const LineSettings& line);
-  /// @return false when the drive hears garbage: its serial settings are others than the master's
+  /// False while the drive hears garbage: its serial settings are others than the master's.
   bool understandsLine() const;
   /// One more of what only the line can see: lost_gap, early or lost_busy.
   void count(std::uint64_t ExchangeCounters::*counter);
   void clearCounters();
   const ExchangeCounters& counters() const;
 
-  /// @name Faults of the connection
-  /// @{
+  // Faults of the connection.
   void inject(const Fault& fault);
   void clearFaults();
-  /// Cuts the drive off the bus (it runs on). @param until when it comes back; nothing: by setOnline()
+  /// Cuts the drive off the bus (it runs on) \p until then; nothing: until setOnline().
   void setOffline(std::optional<TimePoint> until);
   void setOnline();
-  /// Switches the mains off. @param until when it starts up again, without start-up time; nothing: by powerOn()
+  /// Switches the mains off \p until it starts up again, without start-up time; nothing: until powerOn().
   void powerOff(TimePoint now, std::optional<TimePoint> until);
   /// Off for 2 s, then the start-up time.
   void powerCycle(TimePoint now);
   /// Switches the mains on; the drive answers after its start-up time.
   void powerOn(TimePoint now);
-  /// @}
 
-  /// @name Operating the drive by hand
-  /// @{
-  /// Trips the drive. @param code as the drive's manual numbers it
+  // Operating the drive by hand. What is refused says why and changes nothing.
+  /// Trips the drive. \p code as its manual numbers it.
   virtual Refusal trip(int code, TimePoint now) = 0;
   /// What the drive's state word reads while this trip lasts, instead of what its manual says; until it is reset.
   virtual Refusal showTripAs(unsigned state);
-  /// Someone takes the drive over at its panel and runs the motor. @param hertz sign = direction, 0 = stopped
+  /// Somebody takes the drive over at its panel and runs the motor at \p hertz: sign = direction, 0 = stopped, at most the
+  /// maximum frequency.
   virtual Refusal takeOverAtPanel(double hertz, TimePoint now) = 0;
   virtual Refusal releasePanel(TimePoint now) = 0;
   /// The STOP key: the motor ramps down and stays stopped until the run command of the bus has been off.
   virtual Refusal pressStopKey(TimePoint now) = 0;
-  /// Safe torque off. @param active true: the motor is cut off and the drive trips
+  /// Safe torque off. \p active: the motor is cut off and the drive trips.
   virtual Refusal setSafeStop(bool active, TimePoint now) = 0;
-  /// @param load 1.0 = rated torque of the motor; 0 ... 3
+  /// \p load 0 to 3; 1 = rated torque of the motor.
   Refusal setLoad(double load, TimePoint now);
   /// The drive is busy writing its EEPROM until then.
   void setBusy(TimePoint until, TimePoint now);
-  /// Sets a parameter as at the panel: in RAM and EEPROM. @param value in the unit that the panel shows
+  /// Sets a parameter as at the panel, in RAM and EEPROM. \p value is in the unit that the panel shows.
   virtual Refusal setParameter(const std::string& code, double value, TimePoint now) = 0;
-  /// @param[out] values what RAM and EEPROM hold, in the unit that the panel shows
+  /// Appends to \p values what RAM and EEPROM hold, in the unit that the panel shows.
   virtual Refusal parameter(const std::string& code, KeyValues& values) const = 0;
   /// What the motor really does, as of the last advance().
   virtual const Motor& motor() const = 0;
   /// RUN as the drive holds it from the bus, through a trip too.
   virtual bool runCommand() const = 0;
-  /// @}
 
   /// What the drive and its motor really do; call advance() first.
   KeyValues describe() const;
 
 protected:
-  /// @name What a protocol provides
-  /// @{
-  /// A frame for this drive, whole unless answersDamaged(). @param[out] good false when the drive doesn't take it for a request (wrong length)
+  // What a protocol provides.
+  /// A frame for this drive, whole unless answersDamaged(). \p good becomes false where the drive doesn't take it for a
+  /// request (wrong length).
   virtual std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) = 0;
-  /// @return true when the drive answers a damaged frame too
+  /// The drive answers a damaged frame too.
   virtual bool answersDamaged() const;
   virtual bool isBroadcast(const Bytes& frame) const = 0;
   virtual std::optional<int> functionOf(const Bytes& frame) const = 0;
   virtual Access accessOf(const Bytes& frame) const = 0;
   virtual Answer exceptionAnswer(const Bytes& frame, int code) = 0;
   virtual Bytes foreignReply(const Bytes& reply, bool other_station) = 0;
-  /// @}
 
-  /// @name What a brand provides
-  /// @{
+  // What a brand provides.
   /// The next time at which something happens by itself, if before the given one; else the given one.
   virtual TimePoint nextChange(TimePoint limit) const = 0;
   /// The time goes on by this much, during which nothing happens but motion.
@@ -161,11 +156,10 @@ protected:
   virtual void losePower() = 0;
   virtual void gainPower() = 0;
   virtual double startUpTime() const = 0;
-  /// The motor's load is another one. @param load 0 ... 3, 1 = rated torque
+  /// The motor has another \p load: 0 to 3, 1 = rated torque.
   virtual void takeLoad(double load) = 0;
   virtual void takeBusy(TimePoint until) = 0;
   virtual void describeMotor(KeyValues& values) const = 0;
-  /// @}
 
   TimePoint clock() const;
   /// The drive takes another station number (after a power cycle).
@@ -173,7 +167,7 @@ protected:
   /// The drive hears nothing until then (it goes on running).
   void goDeaf(TimePoint until);
   /// Takes other serial settings (after a power cycle); nothing: the drive understands no line at all.
-  /// @param stop_bits_matter the drive checks them
+  /// \p stop_bits_matter: the drive checks them.
   void setSerial(const std::optional<LineSettings>& serial, bool stop_bits_matter = false);
   Random& random();
 

@@ -5,15 +5,14 @@
 #define INVERTER_BUS_SIMULATION_SIMULATED_LINE_H
 
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "inverter_bus/simulation/bytes.h"
 #include "inverter_bus/simulation/line_settings.h"
-#include "inverter_bus/simulation/random.h"
 #include "inverter_bus/simulation/simulated_drive.h"
 #include "inverter_bus/simulation/time.h"
 
@@ -21,6 +20,9 @@ namespace inverter_bus
 {
 namespace simulation
 {
+class Wire;
+struct Transmission;
+
 /// What happens to a request whose first byte comes before the line was silent for LineSettings::frameGap().
 enum class GapRule
 {
@@ -97,8 +99,9 @@ class SimulatedLine
 {
 public:
   SimulatedLine(const LineOptions& options, TimePoint start);
+  ~SimulatedLine();
 
-  /// @param drive must outlive the line
+  /// \p drive must outlive the line.
   void attach(SimulatedDrive& drive);
   /// Called for every frame once it is over (replies: in the order of their ends).
   void setObserver(std::function<void(const FrameRecord&)> observer);
@@ -109,7 +112,7 @@ public:
   std::optional<TimePoint> nextEvent() const;
   /// Does everything that is due up to now.
   void advance(TimePoint now);
-  /// What has come out for the master since the last call. @param now when the master can see it
+  /// What has come out for the master since the last call. \p now is when the master can see it.
   std::vector<Delivery> takeOutput(TimePoint now);
 
   /// The master's port is set otherwise; drives with other settings hear garbage from now on.
@@ -120,7 +123,7 @@ public:
   void setEcho(bool on);
   /// The line between master and drives is cut: nobody hears anything.
   void setSilent(bool on);
-  /// A second master sends a frame, as is. @param wait true: as soon as the line is silent; false: at once
+  /// A second master sends a frame, as it is. \p wait: as soon as the line is silent; else at once.
   void sendForeign(const Bytes& frame, bool wait, TimePoint now);
   /// Bytes of nobody.
   void sendNoise(std::size_t count, TimePoint now);
@@ -128,32 +131,10 @@ public:
   const LineCounters& counters() const;
   void clearCounters();
   const LineOptions& options() const;
-  /// @return true when nothing is on the wire or owed
+  /// Nothing is on the wire or owed.
   bool idle() const;
 
 private:
-  struct WireByte
-  {
-    TimePoint start;
-    std::uint8_t value;
-    bool damaged;
-  };
-
-  /// What one participant sends without a pause.
-  struct Transmission
-  {
-    FrameRecord::Source source = FrameRecord::Source::Master;
-    SimulatedDrive* drive = nullptr;
-    std::vector<WireByte> bytes;
-    bool for_master = true;     // comes out at the master's end
-    std::size_t delivered = 0;  // bytes of it that did
-    bool early = false;         // came before the gap
-    bool joined = false;        // began as one frame and went on as the next
-    bool collided = false;
-    bool served = false;  // a request: the drives have had it
-    bool over = false;    // nothing more to do
-  };
-
   struct Owed
   {
     TimePoint start;
@@ -167,13 +148,8 @@ private:
     Bytes bytes;
   };
 
-  static bool isRequest(const Transmission& transmission);
-  TimePoint endOf(const Transmission& transmission) const;
   TimePoint dueTime(const Transmission& transmission) const;
-  Transmission& open(FrameRecord::Source source);
-  Transmission* openRequest(FrameRecord::Source source);
-  void append(Transmission& transmission, const Bytes& bytes, TimePoint start);
-  void collide(Transmission& added, std::size_t first);
+  void send(Transmission& transmission, const Bytes& bytes, TimePoint start);
   void process(TimePoint time);
   void processForeign(TimePoint time);
   void processOwed(TimePoint time);
@@ -184,23 +160,19 @@ private:
   void serve(const Transmission& transmission, const Bytes& frame, TimePoint time, std::string& remark);
   void finishReply(Transmission& transmission);
   void report(const Transmission& transmission, const std::string& remark);
-  static Bytes valuesOf(const Transmission& transmission);
   bool owes(const SimulatedDrive* drive) const;
   bool wholeForAny(const Bytes& frame) const;
 
   LineOptions options_;
-  Duration character_;
   Duration gap_;  // before a request
   Duration end_;  // after a request
-  Random random_;
   std::vector<SimulatedDrive*> drives_;
   std::function<void(const FrameRecord&)> observer_;
-  std::deque<Transmission> live_;  // references stay valid when one is added at the end
+  std::unique_ptr<Wire> wire_;
   std::vector<Owed> owed_;
   std::vector<WaitingForeign> waiting_;
   std::vector<Delivery> output_;
-  TimePoint last_activity_;  // on the wire
-  TimePoint last_seen_;      // handed over to the master
+  TimePoint last_seen_;  // handed over to the master
   bool connected_ = true;
   bool echo_ = false;
   bool silent_ = false;

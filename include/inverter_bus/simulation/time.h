@@ -16,13 +16,13 @@ using Clock = std::chrono::steady_clock;
 using TimePoint = Clock::time_point;
 using Duration = Clock::duration;
 
-/// @param value [s], also negative
+/// \p value [s], also negative.
 inline Duration seconds(double value)
 {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
 }
 
-/// @return [s]
+/// [s]
 inline double toSeconds(Duration value)
 {
   return std::chrono::duration<double>(value).count();

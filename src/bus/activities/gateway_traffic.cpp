@@ -16,22 +16,21 @@ GatewayTraffic::GatewayTraffic(BusState& bus, const Turns& turns) : bus_(bus), t
 
 GatewayRisk GatewayTraffic::riskOf(const InFlight& current)
 {
-  switch (current.purpose)
+  switch (current.pick.what)
   {
-    case Purpose::StopFrame:
-    case Purpose::Broadcast:
+    case Pick::What::Stop:
+    case Pick::What::Broadcast:
       return GatewayRisk::Stop;
-    case Purpose::Velocity:
+    case Pick::What::Velocity:
       if (current.resync)
       {
         return GatewayRisk::None;
       }
       // A 0 is a stop, and its frame the one that may be in the gateway (contract, 8 and 8.8).
       return current.moves ? GatewayRisk::Motion : GatewayRisk::Stop;
-    case Purpose::Refresh:
-    case Purpose::KeepAlive:
-    case Purpose::Setting:
-      // A setting may have taken the refresh's turn.
+    case Pick::What::Refresh:
+    case Pick::What::Connect:
+    case Pick::What::KeepAlive:
       return current.pick.deadline ? GatewayRisk::Refresh : GatewayRisk::None;
     default:
       return GatewayRisk::None;
@@ -57,7 +56,8 @@ void GatewayTraffic::note(const InFlight& current, const wire::Reply& reply)
   {
     bus_.gateway.lost(reply.finished_at, reply.ticket);
   }
-  const bool read = current.purpose == Purpose::Refresh || current.purpose == Purpose::Setting;
+  const bool read = current.pick.what == Pick::What::Refresh || current.pick.what == Pick::What::Connect ||
+                    current.pick.what == Pick::What::Setting;
   if (!isAnswered(reply) && read)
   {
     othersFirst(bus_.gateway.freeAt(reply.finished_at), *bus_.inverters[current.inverter]);
@@ -168,6 +168,8 @@ std::vector<InverterView> GatewayTraffic::views(TimePoint now) const
   for (const auto& inverter : bus_.inverters)
   {
     views.push_back(inverter->view(now, bus_.budget.deadline_margin));
+    // A setting that is repeated waits for the share of the slow values (contract, 8.3).
+    views.back().background = views.back().background && (!inverter->settings.repeats() || bus_.slow_share.open(now));
     views.back().stop_pending = views.back().stop_pending && !untested(*inverter);
     views.back().stop_not_before = stopNotBefore(now, *inverter);
     views.back().refresh_unanswered = bus_.gateway.refreshUnanswered(now, inverter->index);
@@ -231,7 +233,7 @@ std::optional<Finding> GatewayTraffic::finding() const
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.
 std::optional<Finding> GatewayTraffic::quirkFinding() const
 {
-  const std::string& quirk = bus_.line_watch.gatewayQuirk();
+  const std::string& quirk = bus_.line_watch.facts().gateway_quirk;
   return quirk.empty() ? std::nullopt
                        : std::optional<Finding>(Finding{ Level::Warn, "the gateway is used as it is: " + quirk });
 }

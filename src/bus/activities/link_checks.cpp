@@ -37,11 +37,11 @@ std::optional<Pick> LinkChecks::pick(TimePoint now, Gate& gate)
       return stop;
     }
     Pick pick;
-    pick.what = Pick::What::Refresh;
     const auto in_doubt = std::find_if(bus_.inverters.begin(), bus_.inverters.end(), [](const auto& inverter) {
       return !inverter->link.offline() && inverter->liveness.needsRead();
     });
     pick.inverter = in_doubt != bus_.inverters.end() ? (*in_doubt)->index : *index;
+    pick.what = bus_.inverters[pick.inverter]->connectDue(now) ? Pick::What::Connect : Pick::What::Refresh;
     return pick;
   }
   return std::nullopt;

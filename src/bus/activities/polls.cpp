@@ -20,45 +20,74 @@ Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops,
 {
 }
 
-InFlight Polls::compose(TimePoint now, const Pick& pick)
+InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  InFlight current = exchangeFor(pick, Purpose::Refresh);
+  InFlight current = exchangeFor(pick);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
-  drive::ReadBlock block = inverter.refresh.next(now);
+  drive::ReadBlock block = inverter.refresh.next(now, turns_.slowLeave(now, inverter));
   current.request = inverter.drive.read(inverter.config.node, block);
-  while (!resync && !bus_.line.mayAsk(current.request) && inverter.refresh.skipSlow())
+  while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {
     // What decides over safety does not wait a second for a temperature.
     block = inverter.refresh.next(now);
     current.request = inverter.drive.read(inverter.config.node, block);
   }
-  // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force; never through a gateway,
-  // which could carry them out when everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11).
-  if (!bus_.configuration.bus.gateway && !block.chosen.empty() && inverter.mayRepeatWords(now))
-  {
-    const std::vector<drive::Word> words = inverter.movement.wordsInForce();
-    const wire::Request both =
-        words.empty() ? current.request : inverter.drive.writeAndRead(inverter.config.node, words, block);
-    // After a lost 17H that shape is barred for a while, the plain read is not.
-    current.request = bus_.line.mayAsk(both) ? both : current.request;
-  }
+  current.slow = inverter.refresh.asked().isSlowed();
   std::optional<drive::ReadBlock> variant = block;
-  while (!resync && variant && !bus_.line.mayAsk(current.request))
+  while (!resync && variant && !line.mayAsk(current.request, now))
   {
     // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
     variant = inverter.drive.variantOf(*variant);
     current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
   }
   const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
-  if (!resync && !bus_.line.mayAsk(current.request) && serve_by && *serve_by <= now)
+  if (!resync && !line.mayAsk(current.request, now) && serve_by && *serve_by <= now)
   {
-    const auto spare = guard_.spareRead(inverter);
-    current.purpose = spare ? Purpose::KeepAlive : current.purpose;
+    const auto spare = guard_.spareRead(now, inverter, line);
+    current.pick.what = spare ? Pick::What::KeepAlive : current.pick.what;
     current.request = spare.value_or(current.request);
   }
+  keepAlive(now, inverter, current, line);
   current.request = inverter.prepared(current.request);
   return current;
+}
+
+/// Where only writes, or the command word, feed the drive's own time-out (contract, 8.17): what is in force once more. Rule
+/// 4.1: our RUN only while the last exchange showed it in force, never through a gateway, which could carry it out when
+/// everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11); at rest the stop word.
+void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current, const LineView& line) const
+{
+  const drive::Sequence* stop = inverter.drive.sequence("stop");
+  const bool offline = inverter.link.offline() || !inverter.link.known();
+  const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
+  const bool due = inverter.feeding.needsWrites() && serve_by && *serve_by <= now;
+  if (!due || bus_.configuration.bus.gateway || offline || inverter.settings.identity() != Identity::Right)
+  {
+    return;
+  }
+  const std::uint8_t station = inverter.config.node;
+  wire::Request request;
+  bool with_status = false;
+  if (inverter.mayRepeatWords(now) && !inverter.movement.wordsInForce().empty())
+  {
+    const std::vector<drive::Word> words = inverter.movement.wordsInForce();
+    const drive::ReadBlock& block = inverter.refresh.asked().block;
+    with_status = !block.chosen.empty() && inverter.drive.fitsBlockWrite(words);
+    request = with_status ? inverter.drive.writeAndRead(station, words, block)
+                          : inverter.drive.write(station, words.back().first, words.back().second);
+  }
+  else if (stop != nullptr && !inverter.mayRun() && !inverter.movement.target() && !inverter.stop.pending())
+  {
+    request = inverter.drive.write(station, stop->steps.front().point, stop->steps.front().value.value_or(0));
+  }
+  if (!request.pdu.empty() && line.mayAsk(request, now))
+  {
+    current.request = request;
+    current.keeps_alive = !with_status;
+    current.slow = false;
+    current.pick.what = with_status ? current.pick.what : Pick::What::KeepAlive;
+  }
 }
 
 void Polls::ended(const InFlight& current, const wire::Reply& reply)
@@ -68,7 +97,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   const bool says_nothing = bus_.behind_another && !isAnswered(reply);
   if (!current.resync && !says_nothing)
   {
-    inverter.liveness.noteRead(bus_.line.cost(current.request, Duration{ 0 }), reply);
+    inverter.liveness.noteRead(current.cost, reply);
   }
   if (isAnswered(reply))
   {
@@ -84,19 +113,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
       bus_.outbox.log(Level::Error, inverter.config.name + ": stopped and locked: " + inverter.lost_writes.text());
     }
     turns_.finish(current, reply, more);
-    inverter.noteStatus(reply, more);
-    if (more)
-    {
-      actOn(reply.finished_at, inverter, inverter.wordsRead(reply.finished_at));
-    }
-    if (inverter.refresh.takeComplete())
-    {
-      judge(reply.finished_at, inverter);
-    }
-    else if (!more)
-    {
-      refusedStatus(reply, inverter);
-    }
+    took(reply, inverter, more);
     return;
   }
   // One that has lost as many writes as make a drive offline is not asked twice.
@@ -117,16 +134,51 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   }
 }
 
+/// What an answer to a read of the refresh says, which goes on with \p more.
+void Polls::took(const wire::Reply& reply, Inverter& inverter, bool more)
+{
+  inverter.noteStatus(reply, more);
+  if (more)
+  {
+    actOn(reply.finished_at, inverter, inverter.wordsRead(reply.finished_at));
+  }
+  if (inverter.refresh.takeComplete())
+  {
+    judge(reply.finished_at, inverter);
+  }
+  else if (!more)
+  {
+    refusedStatus(reply, inverter);
+  }
+}
+
+void Polls::cameWithWrite(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  if (!current.with_status || current.resync || reply.outcome != wire::Outcome::Ok || inverter.link.offline())
+  {
+    return;
+  }
+  repeats_[inverter.index].restart();
+  inverter.liveness.dataRead();
+  const bool more = inverter.refresh.received(reply);
+  took(reply, inverter, more);
+}
+
 void Polls::keptAlive(const InFlight& current, const wire::Reply& reply)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
   // One that is lost gives the turn away.
   turns_.finish(current, reply, isAnswered(reply));
-  if (reply.outcome == wire::Outcome::Ok)
+  if (reply.outcome == wire::Outcome::Ok && !current.keeps_alive)
   {
     inverter.liveness.dataRead();
   }
-  if (!isAnswered(reply))
+  if (!isAnswered(reply) && current.keeps_alive)
+  {
+    absences_.noteLostWrite(reply.finished_at, inverter, reply.error_id);
+  }
+  else if (!isAnswered(reply))
   {
     absences_.noteLost(reply.finished_at, inverter, reply.error_id);
   }

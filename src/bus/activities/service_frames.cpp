@@ -13,11 +13,6 @@ namespace
 constexpr double BLIND_RESET_PERIOD_S = 0.02;
 }  // namespace
 
-bool Services::has(CommandId id) const
-{
-  return jobs_.count(id) != 0;
-}
-
 void Services::queue(CommandId id, TimePoint not_before)
 {
   const Running& running = jobs_.at(id);
@@ -53,35 +48,31 @@ std::optional<InFlight> Services::compose(TimePoint now, const Pick& pick)
     end(pick.command, moving);
     return std::nullopt;
   }
-  InFlight current = exchangeFor(pick, Purpose::Job);
-  current.job = pick.command;
+  InFlight current = exchangeFor(pick);
   current.request = inverter.prepared(running.job->next());
   return current;
 }
 
 void Services::sent(const InFlight& current)
 {
-  const auto job = jobs_.find(current.job);
-  if (current.purpose == Purpose::Job && job != jobs_.end())
+  const auto job = jobs_.find(current.pick.command);
+  if (current.pick.what == Pick::What::Service && job != jobs_.end() && job->second.job->inSetup())
   {
-    if (job->second.job->inSetup())
-    {
-      bus_.inverters[current.inverter]->services.setupOpened();
-    }
+    bus_.inverters[current.inverter]->services.setupOpened();
   }
 }
 
 bool Services::wears(const InFlight& current) const
 {
-  const auto job = jobs_.find(current.job);
-  return current.purpose == Purpose::Job && job != jobs_.end() &&
+  const auto job = jobs_.find(current.pick.command);
+  return current.pick.what == Pick::What::Service && job != jobs_.end() &&
          job->second.job->kind() == CommandKind::WriteParameter &&
          bus_.inverters[current.inverter]->drive.profile().writes == drive::Writes::Eeprom;
 }
 
 Ending Services::ended(const InFlight& current, const wire::Reply& reply)
 {
-  const auto found = jobs_.find(current.job);
+  const auto found = jobs_.find(current.pick.command);
   if (found == jobs_.end())
   {
     // Its bound passed, or the inverter went offline, while the frame was on the wire.
@@ -110,7 +101,7 @@ Ending Services::ended(const InFlight& current, const wire::Reply& reply)
   }
   doneStep(reply.finished_at, current);
   turns_.finish(current, reply, false);
-  advance(reply.finished_at, current.job, progress);
+  advance(reply.finished_at, current.pick.command, progress);
   return isAnswered(reply) ? Ending::Nothing : Ending::Lost;
 }
 
@@ -118,7 +109,7 @@ Ending Services::ended(const InFlight& current, const wire::Reply& reply)
 void Services::doneStep(TimePoint now, const InFlight& current)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
-  const Running& running = jobs_.at(current.job);
+  const Running& running = jobs_.at(current.pick.command);
   if (!current.request.expects_reply)
   {
     // It executes without a reply and is deaf for a while: neither a time-out nor an offline drive.

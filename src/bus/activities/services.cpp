@@ -39,7 +39,7 @@ void Services::reset(TimePoint now, std::size_t index, AnswerCallback callback)
   {
     return;
   }
-  const drive::Monitor& told = inverter.refresh.fresh();
+  const drive::Monitor& told = inverter.refresh.fresh().monitor;
   // Not told, or told in a word that nobody knows: what can't be ruled out is reset.
   if (!inverter.interlock.isFaulted() && !told.tripped().value_or(true))
   {

@@ -33,8 +33,6 @@ public:
   void start(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound, AnswerCallback callback);
 
   // --- exchanges ------------------------------------------------------------------------------------------------------
-  /// \p id is that of a service.
-  bool has(CommandId id) const;
   /// Nothing: it can't go now, or has just failed.
   std::optional<InFlight> compose(TimePoint now, const Pick& pick);
   void sent(const InFlight& current);

@@ -17,7 +17,8 @@ SettingsReads::SettingsReads(BusState& bus, Turns& turns, Services& services, Ab
 InFlight SettingsReads::compose(const Pick& pick) const
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
-  InFlight current = exchangeFor(pick, Purpose::Setting);
+  InFlight current = exchangeFor(pick);
+  current.slow = inverter.settings.repeats();
   current.request = inverter.prepared(inverter.settings.next());
   return current;
 }
@@ -30,7 +31,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
     inverter.setting_repeats.restart();
     inverter.settled(reply.finished_at, reply);
     // Before a status it took the refresh's turn, and gives it back.
-    turns_.finish(current, reply, current.pick.what == Pick::What::Refresh);
+    turns_.finish(current, reply, current.pick.what == Pick::What::Connect);
     configureBlock(reply.finished_at, inverter);
     return;
   }

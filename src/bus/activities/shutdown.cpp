@@ -85,7 +85,7 @@ Pick Shutdown::pick(TimePoint now)
     if (best == nullptr && releaseDue(*inverter))
     {
       best = inverter.get();
-      pick.what = Pick::What::Background;
+      pick.what = Pick::What::Release;
     }
   }
   if (best == nullptr)
@@ -103,7 +103,7 @@ InFlight Shutdown::composeRelease(const Pick& pick)
   Inverter& inverter = *bus_.inverters[pick.inverter];
   const drive::Step& step = inverter.drive.sequence("release")->steps.front();
   released_[pick.inverter] = true;
-  InFlight current = exchangeFor(pick, Purpose::Release);
+  InFlight current = exchangeFor(pick);
   current.request = inverter.prepared(inverter.drive.command(inverter.config.node, step));
   return current;
 }

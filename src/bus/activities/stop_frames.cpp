@@ -35,7 +35,7 @@ bool Stops::broadcastIsSafe() const
   };
   // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
   return bus_.connected && bus_.inverters.size() > 1 && !stop_frame(first).empty() &&
-         bus_.line_watch.gatewayQuirk().empty() &&
+         bus_.line_watch.facts().gateway_quirk.empty() &&
          std::all_of(bus_.inverters.begin(), bus_.inverters.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
            return profile.name == first.profile().name && profile.broadcast_stop && !inverter->config.ownPort() &&
@@ -62,8 +62,9 @@ std::optional<InFlight> Stops::composeBroadcast(TimePoint now)
   bus_.broadcast_waits = kept;
   broadcast_due_ = false;
   broadcast_last_ = true;
-  InFlight current;
-  current.purpose = Purpose::Broadcast;
+  Pick pick;
+  pick.what = Pick::What::Broadcast;
+  InFlight current = exchangeFor(pick);
   // broadcastIsSafe() has seen that there is one.
   current.request = *broadcastStop(bus_.inverters.front()->drive);
   return current;
@@ -78,7 +79,7 @@ InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
     // Rule 4.4: its one frame is the stop itself.
     inverter.stop.writeAgain();
   }
-  InFlight current = exchangeFor(pick, Purpose::StopFrame);
+  InFlight current = exchangeFor(pick);
   current.request = inverter.prepared(inverter.stop.next());
   if (pick.probe)
   {
@@ -91,11 +92,11 @@ InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
 void Stops::sent(TimePoint now, const InFlight& current)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
-  if (current.purpose == Purpose::Broadcast && !bus_.gateway.active())
+  if (current.pick.what == Pick::What::Broadcast && !bus_.gateway.active())
   {
     noteLatency(now - broadcast_requested_);
   }
-  if (current.purpose == Purpose::StopFrame && !current.resync)
+  if (current.pick.what == Pick::What::Stop && !current.resync)
   {
     traffic_.tellOfCostlyStop(inverter);
     const auto latency = inverter.stop.sent(now);
@@ -170,8 +171,7 @@ void Stops::noteLatency(Duration latency)
 {
   latency_max_ = std::max(latency_max_, latency);
   const Duration in_gateway = traffic_.worstStop() - bus_.budget.worst_stop - turns_.longestReplyDelay();
-  if (latency >
-      bus_.budget.longest_exchange + turns_.longestReplyDelay() + bus_.line.timing().characters(64) + in_gateway)
+  if (latency > turns_.longestExchange() + bus_.budget.stop_slack + in_gateway)
   {
     bus_.outbox.trace("stop took " + util::durationText(latency) + " to the wire");
   }

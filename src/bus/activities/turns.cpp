@@ -8,6 +8,20 @@ namespace inverter_bus
 {
 namespace bus
 {
+namespace
+{
+/// The wire's time for all that takes from the share of the slow values, once: with \p gap before each exchange, \p unread for
+/// one that was not made yet.
+Duration slowNeeds(const Inverter& inverter, Duration gap, Duration unread)
+{
+  const auto& sources = inverter.drive.profile().command_source;
+  const auto repeated = std::count_if(sources.begin(), sources.end(),
+                                      [](const drive::Expectation& source) { return source.when_commanded; });
+  const Duration settings = inverter.movement.runConfirmed() ? unread * repeated : Duration{ 0 };
+  return inverter.refresh.reads().slowNeeds(gap, unread) + settings;
+}
+}  // namespace
+
 Turns::Turns(BusState& bus) : bus_(bus)
 {
 }
@@ -36,14 +50,38 @@ TimePoint Turns::countedFrom(const wire::Reply& reply) const
   return std::max(reply.sent_at, reply.finished_at - longestExchange());
 }
 
+/// What the share of the slow values leaves to \p inverter (contract, 8.3). One whose warning word has a reason to be another
+/// one goes before all others.
+SlowLeave Turns::slowLeave(TimePoint now, const Inverter& inverter) const
+{
+  Duration needs{ 0 };
+  bool others_ask = false;
+  for (const auto& other : bus_.inverters)
+  {
+    if (!other->link.offline())
+    {
+      needs += slowNeeds(*other, bus_.budget.slow.gap, bus_.budget.slow.longest);
+      others_ask = others_ask || (other->index != inverter.index && other->refresh.asksForWarning(now));
+    }
+  }
+  SlowLeave leave;
+  leave.period = bus_.slow_share.reads() ? bus_.slow_share.period(needs) : Duration{ 0 };
+  leave.open = bus_.slow_share.open(now) && (inverter.refresh.asksForWarning(now) || !others_ask);
+  return leave;
+}
+
 void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
 {
   Duration cost{ 0 };
-  if (current.purpose == Purpose::Refresh && isAnswered(reply))
+  if (current.pick.what == Pick::What::Refresh && isAnswered(reply))
   {
-    cost = bus_.line.cost(current.request, Duration{ 0 });
+    cost = current.cost;
   }
   bus_.meter.exchange(reply.sent_at, reply.finished_at, cost);
+  if (current.slow && !current.resync)
+  {
+    bus_.slow_share.spent(reply.finished_at, price(current, reply) + bus_.budget.slow.gap);
+  }
   if (bus_.shutting_down)
   {
     return;
@@ -60,8 +98,7 @@ Duration Turns::price(const InFlight& current, const wire::Reply& reply) const
 {
   const Duration own = reply.finished_at - countedFrom(reply);
   const bool by_gateway = bus_.gateway.active() && reply.gateway_code != 0;
-  return std::max(by_gateway ? std::max(own, bus_.gateway.block()) : own,
-                  bus_.line.cost(current.request, Duration{ 0 }));
+  return std::max(by_gateway ? std::max(own, bus_.gateway.block()) : own, current.cost);
 }
 }  // namespace bus
 }  // namespace inverter_bus

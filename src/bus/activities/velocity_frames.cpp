@@ -15,6 +15,22 @@ namespace
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 constexpr double STATUS_WAIT_S = 0.02;
 
+/// Where the drive has 17H but no block write: the new frequency of a running motor may go with a read of its status.
+bool joinsRead(const Inverter& inverter, const std::optional<Write>& write)
+{
+  constexpr std::uint8_t WRITE_AND_READ = 0x17;
+  const drive::Profile& profile = inverter.drive.profile();
+  return write && write->last && !write->starts && write->point == "frequency" && inverter.movement.runConfirmed() &&
+         !profile.block && profile.functions.count(WRITE_AND_READ) != 0 &&
+         profile.points.at(write->point).item.space == drive::Space::Register;
+}
+
+bool isRegisterRead(const StatusRead& read)
+{
+  return read.kind == StatusRead::Kind::Fast && read.block.space == drive::Space::Register &&
+         !read.block.fields.empty();
+}
+
 /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
 bool mustBeSeenRunning(const Inverter& inverter)
 {
@@ -22,23 +38,39 @@ bool mustBeSeenRunning(const Inverter& inverter)
 }
 }  // namespace
 
-/// All command words in one frame where the drive can; a word at a time where such a frame could give back a RUN that the
-/// drive has lost (rule 4.1), or where a late reply could be taken for its answer.
-std::optional<Write> Velocities::nextWrite(TimePoint now, const Inverter& inverter) const
+/// All command words in one frame where the drive can, with the status in the same exchange where that is what its refresh
+/// wants next (contract, 3.10); a word at a time where such a frame could give back a RUN that the drive has lost (rule 4.1),
+/// where a late reply could be taken for its answer, and after one that got lost.
+std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, const LineView& line,
+                                           bool& with_status) const
 {
+  with_status = false;
   const bool in_force = inverter.mayRepeatWords(now);
-  if (inverter.refresh.block() && (in_force || !inverter.movement.runConfirmed()))
+  const bool combines = inverter.refresh.chosen().read() && (in_force || !inverter.movement.runConfirmed());
+  if (combines && !read_lost_at_[inverter.index] && inverter.movement.nextCombined(std::nullopt))
   {
-    auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.block() : std::nullopt);
-    if (combined && bus_.line.mayAsk(combined->request))
+    const drive::ReadBlock& read = inverter.refresh.next(now, turns_.slowLeave(now, inverter));
+    with_status = in_force && !read.chosen.empty();
+    auto combined = inverter.movement.nextCombined(with_status ? std::optional<drive::ReadBlock>(read) : std::nullopt);
+    if (combined && line.mayAsk(combined->request, now))
     {
       return combined;
     }
+    with_status = false;
   }
-  return inverter.movement.next();
+  std::optional<Write> write = inverter.movement.next();
+  if (!read_lost_at_[inverter.index] && !single_[inverter.index] && !bus_.configuration.bus.gateway &&
+      joinsRead(inverter, write))
+  {
+    const wire::Request both = inverter.drive.writeAndRead(inverter.config.node, { { write->point, write->raw } },
+                                                           inverter.refresh.next(now, turns_.slowLeave(now, inverter)));
+    with_status = isRegisterRead(inverter.refresh.asked()) && line.mayAsk(both, now);
+    write->request = with_status ? both : write->request;
+  }
+  return write;
 }
 
-std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
+std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   std::vector<std::size_t> members = bus_.scheduler.members(pick.command);
   // The member whose turn it is, and if it needs no frame any more, the next one.
@@ -46,17 +78,19 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
   for (const std::size_t member : members)
   {
     Inverter& inverter = *bus_.inverters[member];
-    if (const auto write = nextWrite(now, inverter))
+    bool with_status = false;
+    if (const auto write = nextWrite(now, inverter, line, with_status))
     {
-      if (write->starts && mustBeSeenRunning(inverter))
+      if ((write->starts && mustBeSeenRunning(inverter)) || mustBeReadFirst(inverter))
       {
         bus_.scheduler.splitOff(pick.command, member, bus_.next_command++, now + seconds(STATUS_WAIT_S), false);
         continue;
       }
       Pick of_member = pick;
       of_member.inverter = member;
-      InFlight current = exchangeFor(of_member, Purpose::Velocity);
+      InFlight current = exchangeFor(of_member);
       current.write = *write;
+      current.with_status = with_status;
       current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
       current.request = inverter.prepared(write->request);
       return current;
@@ -68,7 +102,7 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
 
 void Velocities::sent(const InFlight& current)
 {
-  if (current.purpose != Purpose::Velocity || current.resync)
+  if (current.pick.what != Pick::What::Velocity || current.resync)
   {
     return;
   }
@@ -84,7 +118,7 @@ void Velocities::sent(const InFlight& current)
 bool Velocities::wears(const InFlight& current) const
 {
   const Inverter& inverter = *bus_.inverters[current.inverter];
-  return current.purpose == Purpose::Velocity && inverter.drive.wears(current.write.point) &&
+  return current.pick.what == Pick::What::Velocity && inverter.drive.wears(current.write.point) &&
          !inverter.settings.connected();
 }
 
@@ -94,6 +128,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   const TimePoint now = reply.finished_at;
   const bool cancelled = !bus_.scheduler.velocityWaits(current.inverter);
   noteBlockRefusal(current, reply);
+  noteLostRead(current, reply);
   if (reply.outcome == wire::Outcome::Ok && !cancelled)
   {
     inverter.movement.confirmed(current.write, now);
@@ -110,6 +145,10 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   {
     // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
     inverter.movement.doubtful(current.write, now);
+  }
+  if (refusedWithStatus(current, reply) && !cancelled)
+  {
+    return;
   }
   const bool lost = !isAnswered(reply);
   // A loop-back that was lost writes nothing.
@@ -131,6 +170,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
     return;
   }
   inverter.lost_writes.velocityEnded();
+  read_lost_at_[inverter.index].reset();
   if (lost)
   {
     absences_.noteLostWrite(now, inverter, reply.error_id);
@@ -139,6 +179,20 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   {
     fail(current, reply, too_many);
   }
+}
+
+/// A drive that refuses a frequency in one frame with a read gets it by a plain write, once more and from now on: it may not
+/// know that function, whatever its manual says.
+bool Velocities::refusedWithStatus(const InFlight& current, const wire::Reply& reply)
+{
+  if (reply.outcome != wire::Outcome::Exception || !current.with_status || !current.write.more.empty())
+  {
+    return false;
+  }
+  single_[current.inverter] = true;
+  bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, reply.finished_at, false);
+  turns_.finish(current, reply, true);
+  return true;
 }
 
 /// It is not sent again.
@@ -172,6 +226,24 @@ void Velocities::fail(const InFlight& current, const wire::Reply& reply, bool to
   }
 }
 
+/// Not what takes RUN off: that never waits.
+bool Velocities::mustBeReadFirst(const Inverter& inverter) const
+{
+  const auto& lost_at = read_lost_at_[inverter.index];
+  const auto& target = inverter.movement.target();
+  return lost_at && target && !target->zero && inverter.refresh.stamp().value_or(TimePoint()) <= *lost_at;
+}
+
+/// What the drive took of a lost write with a read shows in a plain read, which goes before the plain writes (contract, 3.10).
+void Velocities::noteLostRead(const InFlight& current, const wire::Reply& reply)
+{
+  if (!isAnswered(reply) && current.with_status && !current.resync)
+  {
+    read_lost_at_[current.inverter] = reply.finished_at;
+    bus_.scheduler.readSoon(current.inverter);
+  }
+}
+
 /// A drive that can't carry out a block write (slots empty or not in effect) gets its words one by one from the next
 /// command on; this one is refused like any other, since nobody knows what the drive took of it.
 void Velocities::noteBlockRefusal(const InFlight& current, const wire::Reply& reply)
@@ -193,6 +265,7 @@ void Velocities::finish(const InFlight& current, const wire::Reply& reply)
   const bool over = current.write.last || frames_[inverter.index] >= MOST_FRAMES_PER_UNIT;
   if (complete)
   {
+    read_lost_at_[inverter.index].reset();
     inverter.command_error.confirmed();
   }
   if (complete || over)

@@ -9,29 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "bus/inverter/connect_steps.h"
+#include "bus/inverter/drive_identity.h"
+#include "bus/inverter/setting_facts.h"
+#include "bus/inverter/setting_list.h"
 #include "inverter_bus/bus/types.h"
 
 namespace inverter_bus
 {
 namespace bus
 {
-/// What the drive says of itself against what its profile expects.
-enum class Identity
-{
-  /// It fits, or the profile knows nothing that would tell it from another.
-  Right,
-  /// It has not been asked yet.
-  Unknown,
-  Wrong
-};
-
-/// How the words of a block read and a block write are selected in the drive, by code.
-struct BlockSlots
-{
-  std::vector<int> read;
-  std::vector<int> write;
-};
-
 /// What is settled with a drive once at every connect. First what decides whether it may be commanded at all: what it is
 /// (identity) and what it must be told (the profile's sequence `connect`). Then, in the lowest class, its own settings
 /// that decide over safety: who may command it, what it does when the bus falls silent, whether it restarts by itself, how
@@ -54,6 +41,9 @@ public:
   bool pending() const;
   /// next() writes.
   bool nextWrites() const;
+  /// next() asks for what was told before, or refused for the moment: it takes from the share of the slow values
+  /// (contract, 8.3).
+  bool repeats() const;
   wire::Request next() const;
   void done(const wire::Reply& reply);
   /// How long the next exchange of the lowest class is to wait: 0, or, when all that is left was refused for the moment,
@@ -88,52 +78,13 @@ public:
   std::vector<std::pair<std::string, std::string>> values() const;
 
 private:
-  enum class State
-  {
-    Unread,
-    Known,
-    Refused
-  };
-  struct Setting
-  {
-    drive::Parameter parameter;
-    /// Read before the first status.
-    bool urgent = false;
-    /// Read only while a command of ours is in force.
-    bool when_commanded = false;
-    State state = State::Unread;
-    /// Known, but to be read anew.
-    bool again = false;
-    /// In a row, each of them of the moment.
-    unsigned refusals = 0;
-    std::uint32_t raw = 0;
-    double value = 0.0;
-  };
-  void want(const std::string& parameter);
-  void want(const std::vector<drive::Expectation>& expectations, bool urgent);
-  const Setting* find(const std::string& parameter) const;
-  const Setting* known(const std::string& parameter) const;
-  const Setting* unread() const;
-  bool due(const Setting& setting) const;
-  bool modelDue() const;
-  bool connectDue() const;
-  void doneModel(const wire::Reply& reply);
-  void doneConnect(const wire::Reply& reply);
-  std::optional<std::vector<int>> codesOf(const std::vector<std::string>& slots) const;
-  void expectationFindings(const std::vector<drive::Expectation>& expectations, const std::string& prefix,
-                           std::vector<Finding>& findings) const;
-  void lossFindings(std::vector<Finding>& findings) const;
+  const drive::Step* connectStep() const;
 
   const drive::Drive& drive_;
   std::uint8_t station_;
-  std::vector<Setting> settings_;
-  bool wants_model_ = false;
-  State model_state_ = State::Unread;
-  std::string model_;
-  std::size_t connect_step_ = 0;
-  State connect_state_ = State::Unread;
-  std::uint16_t connect_error_ = 0;
-  bool commanded_ = false;
+  SettingList settings_;
+  DriveIdentity identity_;
+  ConnectSteps connect_;
   bool leave_setup_ = false;
 };
 }  // namespace bus

@@ -31,11 +31,12 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , interlock(config.command_timeout)
   , movement(drive, config)
   , stop(drive, config.node)
-  , refresh(drive, config.node)
+  , refresh(drive)
   , settings(drive, config.node)
   , loopback(config.modbus_tcp)
   , link(offline_after)
   , evidence(drive)
+  , feeding(drive)
   , motion(drive, config)
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
@@ -145,7 +146,7 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
 std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeBlockWrites()
 {
   const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
-                       !refresh.fresh().running.value_or(true);
+                       !refresh.fresh().monitor.running.value_or(true);
   const bool may_write = at_rest && settings.identity() == Identity::Right;
   return block_transfer.takeWrites(may_write ? settings.blockSlots() : std::nullopt);
 }
@@ -166,7 +167,7 @@ void Inverter::noteExchange(const wire::Reply& reply)
     return;
   }
   // A short power cut may be behind it.
-  refresh.suspectRestart();
+  refresh.slow().suspectRestart();
   if (drive.wears("frequency"))
   {
     // After one the drive writes set-points to its EEPROM again.
@@ -181,11 +182,11 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
     return;
   }
   link.dataRead();
-  if (!refresh.block() && refresh.takeBlockRefusal())
+  if (!refresh.chosen().read() && refresh.takeBlockRefusal())
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
-  evidence.statusRead(more ? refresh.words() : refresh.fresh(), reply, movement);
+  evidence.statusRead(more ? refresh.words().monitor : refresh.fresh().monitor, reply, movement);
 }
 
 void Inverter::parameterWritten(const std::string& name)
@@ -197,9 +198,14 @@ void Inverter::parameterWritten(const std::string& name)
   }
 }
 
-bool Inverter::inSetup() const
+Holds Inverter::holds() const
 {
-  return services.setupOpen() || settings.leavingSetup();
+  Holds holds;
+  holds.stop = stop.held();
+  holds.unidentified = settings.identity() == Identity::Unknown;
+  holds.resetting = services.resetting();
+  holds.in_setup = services.setupOpen() || settings.leavingSetup();
+  return holds;
 }
 
 bool Inverter::mayRepeatWords(TimePoint now) const
@@ -209,7 +215,7 @@ bool Inverter::mayRepeatWords(TimePoint now) const
 
 bool Inverter::mayRun() const
 {
-  const drive::Monitor& monitor = refresh.fresh();
+  const drive::Monitor& monitor = refresh.fresh().monitor;
   return movement.runPossible() || monitor.operation.value_or(false) || monitor.running.value_or(false) ||
          monitor.output_frequency.value_or(0.0) > 0.0;
 }
@@ -230,8 +236,8 @@ Judgement Inverter::statusComplete(TimePoint now)
   liveness.complete(now);
   record.restart();
   interlock.online(now);
-  Judgement judgement = compare(now, refresh.fresh(), refresh.freshSentAt(), true);
-  if (evidence.takeSourceDue(now, movement))
+  Judgement judgement = compare(now, refresh.fresh(), true);
+  if (evidence.takeSourceDue(now, movement, refresh.reads().slowPeriod()))
   {
     settings.commanded();
   }
@@ -240,28 +246,28 @@ Judgement Inverter::statusComplete(TimePoint now)
 
 Judgement Inverter::wordsRead(TimePoint now)
 {
-  return compare(now, refresh.words(), refresh.wordsSentAt(), false);
+  return compare(now, refresh.words(), false);
 }
 
 /// What the drive does with what it was told, and what follows for the parts of this inverter.
-Judgement Inverter::compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete)
+Judgement Inverter::compare(TimePoint now, const StatusWords& words, bool complete)
 {
   const MotionVerdict verdict =
-      motion.judge({ words, sent_at, now, complete, movement, stop.pending(), interlock.isFaulted() });
+      motion.judge({ words.monitor, words.sent_at, now, complete, movement, stop.pending(), interlock.isFaulted() });
   if (verdict.faulted)
   {
     interlock.faulted(*verdict.faulted);
   }
   if (verdict.came_to_rest)
   {
-    cameToRest(sent_at);
+    cameToRest(words.sent_at);
   }
   if (verdict.told_after_turn)
   {
     movement.seenRunning();
   }
   Judgement judgement = verdict.judgement;
-  const std::string restart = noteRestart(words, sent_at);
+  const std::string restart = noteRestart(words.monitor, words.sent_at);
   judgement.stop_reason = restart.empty() ? judgement.stop_reason : restart;
   return judgement;
 }
@@ -288,7 +294,7 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   if (restart == Restart::PerhapsBeforeRun)
   {
     settings.connectAgain();
-    refresh.askForRun();
+    refresh.slow().askForRun();
     return "";
   }
   settings.restart();
@@ -301,14 +307,16 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
 
 // --- status ----------------------------------------------------------------------------------------------------------
 
-Obstacles Inverter::obstacles() const
+Obstacles Inverter::obstacles(TimePoint now) const
 {
+  const Holds held = holds();
   Obstacles obstacles;
+  obstacles.locked = interlock.locked(now, held);
   obstacles.offline = link.offline();
   obstacles.tripped = interlock.isFaulted();
   obstacles.stop_pending = interlock.stopPending();
-  obstacles.reset_active = services.resetting();
-  obstacles.in_setup = inSetup();
+  obstacles.reset_active = held.resetting;
+  obstacles.in_setup = held.in_setup;
   obstacles.wrong_drive = settings.identity() != Identity::Right;
   return obstacles;
 }
@@ -316,7 +324,7 @@ Obstacles Inverter::obstacles() const
 InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
 {
   InverterView view;
-  const drive::Monitor& monitor = refresh.fresh();
+  const drive::Monitor& monitor = refresh.fresh().monitor;
   view.offline = link.silent();
   const bool tells = monitor.run_seen || monitor.operation || monitor.running;
   view.at_rest = link.known() && tells && !movement.runPossible() && !movement.target() &&
@@ -327,6 +335,7 @@ InverterView Inverter::view(TimePoint now, Duration deadline_margin) const
   view.stop_written = stop.pending() && stop.written();
   view.stop_repeats = stop.pending() && stop.repeats() && !movement.runPossible();
   view.refresh_not_before = pauses.statusNotBefore();
+  view.connect_due = connectDue(now);
   const bool refused = settings.pauseBeforeNext() > Duration{ 0 };
   view.background = link.known() && !link.offline() && settings.pending() && pauses.settingsAllowed(now, refused);
   view.serve_by = serveBy(deadline_margin);
@@ -340,9 +349,10 @@ std::optional<TimePoint> Inverter::serveBy(Duration deadline_margin) const
   {
     return std::nullopt;
   }
+  const TimePoint fed_at = feeding.needsWrites() ? feeding.fedAt().value_or(*link.lastAnswer()) : *link.lastAnswer();
   const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
   // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
-  return *link.lastAnswer() + std::max(latest, *timeout / 2);
+  return fed_at + std::max(latest, *timeout / 2);
 }
 }  // namespace bus
 }  // namespace inverter_bus

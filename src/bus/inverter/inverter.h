@@ -12,6 +12,7 @@
 #include "bus/inverter/block_transfer.h"
 #include "bus/inverter/command_error.h"
 #include "bus/inverter/drive_settings.h"
+#include "bus/inverter/feeding.h"
 #include "bus/inverter/link.h"
 #include "bus/inverter/link_record.h"
 #include "bus/inverter/liveness.h"
@@ -54,6 +55,7 @@ public:
   LoopbackKnowledge loopback;
   Link link;
   RunEvidence evidence;
+  Feeding feeding;
   MotionWatch motion;
   BlockTransfer block_transfer;
   CommandError command_error;
@@ -85,7 +87,7 @@ public:
   /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
   /// (contract, 8.8).
   bool loopbackUsable() const;
-  /// A refresh may repeat the confirmed command words (contract, 4.1).
+  /// A keep-alive may repeat the confirmed command words (contract, 4.1).
   bool mayRepeatWords(TimePoint now) const;
 
   // --- what is settled at connect -----------------------------------------------------------------------------------
@@ -115,16 +117,16 @@ public:
   // --- answers ------------------------------------------------------------------------------------------------------
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
-  /// A parameter is being written in the drive's setup area, where it can't run.
-  bool inSetup() const;
-  /// What stands in the way of a velocity now; locked is not asked for.
-  Obstacles obstacles() const;
+  /// What bars velocities as long as it lasts, for the interlock.
+  Holds holds() const;
+  /// What stands in the way of a velocity now.
+  Obstacles obstacles(TimePoint now) const;
   /// What the scheduler must know of it.
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
 private:
   void forgetDrive(bool after_silence);
-  Judgement compare(TimePoint now, const drive::Monitor& words, TimePoint sent_at, bool complete);
+  Judgement compare(TimePoint now, const StatusWords& words, bool complete);
   std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);
 };
 }  // namespace bus

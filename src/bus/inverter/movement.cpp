@@ -205,7 +205,7 @@ std::vector<drive::Word> Movement::wordsInForce() const
   const bool all =
       std::all_of(words.begin(), words.end(), [this](const drive::Word& word) { return isConfirmed(word); });
   const bool in_force = run_confirmed_ && target_ && !target_->zero && all;
-  return in_force && drive_.fitsBlockWrite(words) ? words : std::vector<drive::Word>();
+  return in_force ? words : std::vector<drive::Word>();
 }
 
 void Movement::sentWord(const drive::Word& word)

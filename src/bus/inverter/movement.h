@@ -78,8 +78,8 @@ public:
   /// The same with all command words in one frame, where the drive's block write has exactly these; \p read is what
   /// comes back in the same exchange (17H), if anything.
   std::optional<Write> nextCombined(const std::optional<drive::ReadBlock>& read) const;
-  /// The words of the confirmed command while it is in force, for a refresh that repeats them (rule 4.1); empty: none, or
-  /// not all confirmed.
+  /// The words of the confirmed command while it is in force, for a keep-alive that repeats them (rule 4.1), the one that
+  /// starts the motor last; empty: none, or not all confirmed.
   std::vector<drive::Word> wordsInForce() const;
   void sent(const Write& write);
   void confirmed(const Write& write, TimePoint now);

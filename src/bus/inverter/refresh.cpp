@@ -2,113 +2,43 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/inverter/refresh.h"
 
-#include <algorithm>
-#include <tuple>
-
-#include "drive/monitor_fields.h"
-
 namespace inverter_bus
 {
 namespace bus
 {
 namespace
 {
-constexpr double OLDEST_SLOW_VALUE_S = 1.0;
-// A slow value is read again in the refresh whose status it would be too old for; one goes per refresh, so they stagger.
-constexpr double SLOW_MARGIN_S = 0.1;
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
 constexpr double POSTPONED_S = 0.5;
+constexpr std::uint8_t NO_SUCH_ADDRESS = 0x02;
 
-template <typename T>
-void take(const std::optional<T>& from, std::optional<T>& to)
+/// Some number in the read is none of the drive's, and never will be.
+bool isHole(const wire::Reply& reply)
 {
-  if (from)
-  {
-    to = from;
-  }
+  return reply.pdu.size() > 1 && reply.pdu[1] == NO_SUCH_ADDRESS;
 }
 
-template <typename... Field>
-void takeEach(const std::tuple<const Field&...>& from, const std::tuple<Field&...>& to)
+/// The drive's warning word has a reason to be another one.
+bool warns(const drive::Monitor& before, const drive::Monitor& now)
 {
-  std::apply([&to](const auto&... value) { std::apply([&](auto&... kept) { (take(value, kept), ...); }, to); }, from);
+  const auto changed = [](const std::optional<bool>& one, const std::optional<bool>& other) {
+    return one && other && *one != *other;
+  };
+  return changed(before.overload_warning, now.overload_warning) || changed(before.tripped(), now.tripped());
 }
 
-unsigned lastAddress(const drive::Item& item)
+/// The refresh under way starts again.
+bool backToDirectReads(Refresh& refresh, ChosenBlock& chosen)
 {
-  return item.address + item.size - 1U;
-}
-
-bool carries(const drive::ReadBlock& block, const char* field)
-{
-  return std::find(block.fields.begin(), block.fields.end(), field) != block.fields.end();
+  refresh.useBlock(std::nullopt);
+  chosen.drop();
+  return true;
 }
 }  // namespace
 
-void mergeMonitor(const drive::Monitor& from, drive::Monitor& to)
+Refresh::Refresh(const drive::Drive& drive) : drive_(drive), reads_(drive), chosen_(drive)
 {
-  takeEach(drive::monitorFields(from), drive::monitorFields(to));
-}
-
-std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive::ReadBlock& block)
-{
-  std::vector<std::string> fields = block.fields;
-  const auto& items = drive.profile().status;
-  // A packed word (raw_status) that spans the others can't be split; it is left out.
-  fields.erase(std::remove_if(fields.begin(), fields.end(),
-                              [&](const std::string& field) {
-                                return fields.size() > 1 && items.at(field).size == block.count && block.count > 2;
-                              }),
-               fields.end());
-  std::sort(fields.begin(), fields.end(), [&](const std::string& left, const std::string& right) {
-    return items.at(left).address < items.at(right).address;
-  });
-  std::size_t cut = 0;
-  unsigned widest = 0;
-  for (std::size_t index = 1; index < fields.size(); ++index)
-  {
-    const unsigned gap = items.at(fields[index]).address - lastAddress(items.at(fields[index - 1]));
-    if (gap > widest)
-    {
-      widest = gap;
-      cut = index;
-    }
-  }
-  if (cut == 0)
-  {
-    return { block };
-  }
-  const auto middle = fields.begin() + static_cast<std::ptrdiff_t>(cut);
-  return { drive.blockOf({ fields.begin(), middle }), drive.blockOf({ middle, fields.end() }) };
-}
-
-Refresh::Refresh(const drive::Drive& drive, std::uint8_t station) : drive_(drive), station_(station)
-{
-  buildBlocks();
-}
-
-void Refresh::buildBlocks()
-{
-  blocks_.clear();
-  slow_cursor_ = 0;
-  const auto add = [&](const std::vector<drive::ReadBlock>& reads, Class kind) {
-    for (const drive::ReadBlock& read : reads)
-    {
-      Block block;
-      block.read = read;
-      block.kind = kind;
-      blocks_.push_back(block);
-    }
-  };
-  add(block_ ? drive_.slowBlocksBeside(*block_) : drive_.slowBlocks(), Class::Slow);
-  add(drive_.faultBlocks(), Class::Fault);
-  // Last, so that the stamp belongs to the values that matter.
-  add(block_ ? drive_.fastBlocksBeside(*block_) : drive_.fastBlocks(), Class::Fast);
-  if (block_)
-  {
-    add({ *block_ }, Class::Fast);
-  }
 }
 
 void Refresh::setRatings(const drive::Ratings& ratings)
@@ -118,108 +48,35 @@ void Refresh::setRatings(const drive::Ratings& ratings)
 
 void Refresh::useBlock(const std::optional<drive::ReadBlock>& block)
 {
-  const bool same = block.has_value() == block_.has_value() && (!block || block->chosen == block_->chosen);
-  if (same)
+  if (chosen_.use(block))
   {
-    return;
+    plan_.clear();
+    reads_.build(block);
+    slow_.restart();
   }
-  failed();
-  block_ = block;
-  block_proven_ = false;
-  block_refusals_ = 0;
-  chosen_values_.clear();
-  buildBlocks();
+}
+
+const ChosenBlock& Refresh::chosen() const
+{
+  return chosen_;
 }
 
 bool Refresh::takeBlockRefusal()
 {
-  const bool refused = block_refused_;
-  block_refused_ = false;
-  return refused;
+  return chosen_.takeRefusal();
 }
 
-const std::optional<drive::ReadBlock>& Refresh::block() const
+void Refresh::plan(TimePoint now, const SlowLeave& leave)
 {
-  return block_;
-}
-
-const std::vector<std::pair<std::string, std::string>>& Refresh::chosenValues() const
-{
-  return chosen_values_;
-}
-
-/// Back to direct reads; the refresh under way starts again.
-bool Refresh::dropBlock()
-{
-  useBlock(std::nullopt);
-  block_refused_ = true;
-  return true;
-}
-
-/// Slots that were changed but don't count yet bring other words, or zeros. The status word must be what the direct read
-/// before it was; a drive that changes its state just then is read directly until its next return, which costs little.
-bool Refresh::isChosenWord(const Block& block, const wire::Reply& reply) const
-{
-  drive::Monitor values;
-  drive_.decode(block.read, reply.pdu, values, ratings_);
-  return !values.raw_status || !fresh_.raw_status || *values.raw_status == *fresh_.raw_status;
-}
-
-void Refresh::plan(TimePoint now)
-{
-  plan_.clear();
-  position_ = 0;
-  fault_planned_ = false;
-  run_read_ = false;
-  scratch_ = drive::Monitor();
-  scratch_sent_at_ = TimePoint::max();
-  scratch_stamp_ = TimePoint();
-  planSlow(now);
-  for (std::size_t index = 0; index < blocks_.size(); ++index)
-  {
-    const Block& block = blocks_[index];
-    if (block.kind == Class::Fast && now >= block.left_out_until)
-    {
-      plan_.push_back(index);
-    }
-  }
+  draft_.restart();
+  reads_.planPeriod(leave.period);
+  plan_ = slow_.take(reads_, now, !stamp_, leave);
+  const std::vector<std::size_t> fast = reads_.open(StatusRead::Kind::Fast, now);
+  plan_.insert(plan_.end(), fast.begin(), fast.end());
   if (plan_.empty())
   {
     // Everything is refused: keep asking for something, so that the inverter's return to health is seen.
-    plan_.push_back(blocks_.size() - 1);
-  }
-}
-
-/// What a leftover RUN or a restart can be told from, after a return or a lost exchange.
-bool Refresh::goesFirst(const Block& block) const
-{
-  const bool run = !run_heard_ && carries(block.read, "run_seen");
-  const bool restart = restart_suspected_ && carries(block.read, "restarted");
-  return block.kind == Class::Slow && (run || restart);
-}
-
-/// At most one slow read that is due, or those that go first.
-void Refresh::planSlow(TimePoint now)
-{
-  const auto now_first = [&](const Block& block) { return goesFirst(block) && now >= block.left_out_until; };
-  const bool some_first = std::any_of(blocks_.begin(), blocks_.end(), now_first);
-  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
-  bool planned = false;
-  for (std::size_t step = 0; step < blocks_.size(); ++step)
-  {
-    const std::size_t index = (slow_cursor_ + step) % blocks_.size();
-    Block& block = blocks_[index];
-    if (block.kind != Class::Slow || now < block.left_out_until)
-    {
-      continue;
-    }
-    const bool due = !block.ever || now - block.last >= due_age;
-    if (some_first ? now_first(block) : has_stamp_ && !planned && due)
-    {
-      plan_.push_back(index);
-      planned = true;
-      slow_cursor_ = index + 1;
-    }
+    plan_.push_back(reads_.size() - 1);
   }
 }
 
@@ -230,203 +87,143 @@ bool Refresh::takeRefusal()
   return refused;
 }
 
-/// Whether the motor runs stands in it: without such a word there is no status (contract, 8.15).
-bool Refresh::tellsRun(const Block& block) const
+const StatusRead& Refresh::asked() const
 {
-  return block.kind == Class::Fast &&
-         (carries(block.read, "run_seen") || carries(block.read, "operation") || carries(block.read, "running"));
+  return reads_[plan_.front()];
 }
 
-const drive::ReadBlock& Refresh::next(TimePoint now)
+const drive::ReadBlock& Refresh::next(TimePoint now, const SlowLeave& leave)
 {
   asked_at_ = now;
-  if (position_ >= plan_.size())
+  if (plan_.empty())
   {
-    plan(now);
+    plan(now, leave);
   }
-  return blocks_[plan_[position_]].read;
-}
-
-void Refresh::planFaultReads()
-{
-  fault_planned_ = true;
-  for (std::size_t index = 0; index < blocks_.size(); ++index)
-  {
-    if (blocks_[index].kind == Class::Fault && asked_at_ >= blocks_[index].left_out_until)
-    {
-      plan_.push_back(index);
-    }
-  }
+  return asked().block;
 }
 
 bool Refresh::advance()
 {
-  ++position_;
-  if (position_ == plan_.size() && scratch_.tripped().value_or(false) && !fault_planned_)
+  plan_.erase(plan_.begin());
+  if (plan_.empty() && draft_.takeFaultDue())
   {
-    // The reason of a trip belongs into the first status that shows it.
-    planFaultReads();
+    plan_ = reads_.open(StatusRead::Kind::Fault, asked_at_);
   }
-  if (position_ < plan_.size())
+  if (!plan_.empty())
   {
     return true;
   }
-  const bool tells_run =
-      std::any_of(blocks_.begin(), blocks_.end(), [this](const Block& block) { return tellsRun(block); });
-  if (scratch_stamp_ == TimePoint() || (tells_run && !run_read_))
+  if (!draft_.suffices(reads_.tellRun()))
   {
     // Every read was refused, or every one that tells whether the motor runs: that is no status.
-    failed();
     return false;
   }
-  if (!scratch_.tripped().value_or(true) && drive_.reports("fault_code"))
+  if (warns(fresh_.monitor, draft_.words().monitor))
   {
-    scratch_.fault_code = 0;
+    slow_.askForWarning();
   }
-  plan_.clear();
-  position_ = 0;
-  run_heard_ = run_heard_ || scratch_.run_seen.has_value() || !drive_.reports("run_seen");
-  fresh_ = scratch_;
-  fresh_sent_at_ = scratch_sent_at_;
+  fresh_ = draft_.words();
+  if (!fresh_.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
+  {
+    fresh_.monitor.fault_code = 0;
+  }
+  slow_.noteRun(fresh_.monitor, drive_.reports("run_seen"));
   // Only now: a stamp belongs to a whole status, not to half of a new one beside half of an old one.
-  stamp_ = scratch_stamp_;
-  has_stamp_ = true;
+  stamp_ = draft_.stamp();
   complete_ = true;
   return false;
 }
 
 bool Refresh::received(const wire::Reply& reply)
 {
-  Block& block = blocks_[plan_[position_]];
-  if (!block.read.chosen.empty())
+  StatusRead& read = reads_[plan_.front()];
+  if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, fresh_.monitor))
   {
-    if (!block_proven_ && !isChosenWord(block, reply))
-    {
-      return dropBlock();
-    }
-    block_proven_ = true;
-    block_refusals_ = 0;
-    chosen_values_ = drive_.chosenValues(block.read, reply.pdu, ratings_);
+    return backToDirectReads(*this, chosen_);
   }
-  block.values = drive::Monitor();
-  drive_.decode(block.read, reply.pdu, block.values, ratings_);
-  block.last = reply.finished_at;
-  block.ever = true;
-  takeRunWords(block, reply);
-  run_read_ = run_read_ || tellsRun(block);
-  if (block.kind == Class::Fast)
-  {
-    scratch_stamp_ = reply.finished_at;
-  }
+  read.values = drive::Monitor();
+  drive_.decode(read.block, reply.pdu, read.values, ratings_);
+  read.period = read.ever ? reply.finished_at - read.last : Duration{ 0 };
+  read.took = reply.finished_at - reply.sent_at;
+  read.last = reply.finished_at;
+  read.ever = true;
+  slow_.noteRestart(read.values);
+  slow_.noteWarning(read);
+  draft_.take(read, reply);
   return advance();
-}
-
-/// What decides over safety counts in the refresh that brought it, whether it is read in every one or not.
-void Refresh::takeRunWords(const Block& block, const wire::Reply& reply)
-{
-  if (block.kind != Class::Slow)
-  {
-    mergeMonitor(block.values, scratch_);
-  }
-  take(block.values.run_seen, scratch_.run_seen);
-  take(block.values.restarted, scratch_.restarted);
-  restart_suspected_ = restart_suspected_ && !block.values.restarted;
-  const bool fast = block.kind == Class::Fast && (block.values.operation || block.values.running);
-  if (block.values.run_seen || fast)
-  {
-    scratch_sent_at_ = std::min(scratch_sent_at_, reply.sent_at);
-  }
 }
 
 bool Refresh::refused(const wire::Reply& reply)
 {
-  constexpr unsigned MOST_BLOCK_REFUSALS = 2;
-  const bool chosen = !blocks_[plan_[position_]].read.chosen.empty();
-  if (chosen && ++block_refusals_ >= MOST_BLOCK_REFUSALS)
+  const bool lasting = isLastingRefusal(reply);
+  if (!asked().block.chosen.empty() && chosen_.refused(lasting))
   {
-    return dropBlock();
+    return backToDirectReads(*this, chosen_);
   }
-  if (!isLastingRefusal(reply))
+  if (!lasting)
   {
     // Busy, or locked for the moment: nothing is known, and nothing follows for later refreshes.
     return postpone();
   }
-  const std::size_t index = plan_[position_];
-  if (!blocks_[index].read.chosen.empty())
-  {
-    return dropBlock();
-  }
-  if (blocks_[index].read.fields.empty())
+  if (asked().block.fields.empty())
   {
     // A keep-alive that is refused was heard all the same.
-    scratch_stamp_ = reply.finished_at;
+    draft_.heard(reply.finished_at);
     return advance();
   }
-  const std::vector<drive::ReadBlock> halves = splitBlock(drive_, blocks_[index].read);
-  if (halves.size() < 2)
+  if (reads_.split(plan_.front(), isHole(reply)))
   {
-    return leaveOut(index, reply);
+    // The plan's numbers moved: this refresh starts again with the smaller reads.
+    plan_.clear();
+    return true;
   }
-  Block second = blocks_[index];
-  second.read = halves[1];
-  blocks_[index].read = halves[0];
-  blocks_.insert(blocks_.begin() + static_cast<std::ptrdiff_t>(index) + 1, second);
-  // The plan's indices moved: this refresh starts again with the smaller reads.
-  plan_.clear();
-  position_ = 0;
-  return true;
+  return leaveOut(reply);
 }
 
 /// A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
-bool Refresh::leaveOut(std::size_t index, const wire::Reply& reply)
+bool Refresh::leaveOut(const wire::Reply& reply)
 {
-  Block& block = blocks_[index];
-  block.values = drive::Monitor();
-  const bool another = std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& other) {
-    return &other != &block && tellsRun(other) && reply.finished_at >= other.left_out_until;
-  });
-  if (tellsRun(block) && !another)
+  StatusRead& read = reads_[plan_.front()];
+  read.values = drive::Monitor();
+  if (read.tellsRun() && !reads_.othersTellRun(plan_.front(), reply.finished_at))
   {
     run_refused_ = true;
     failed();
     return false;
   }
-  block.left_out_until = reply.finished_at + seconds(LEFT_OUT_S);
+  read.left_out_until = reply.finished_at + seconds(LEFT_OUT_S);
   return advance();
 }
 
 bool Refresh::skipSlow()
 {
-  const Block& block = blocks_[plan_[position_]];
-  // The first word of a leftover RUN is waited for.
-  const bool waited_for = !run_heard_ && carries(block.read, "run_seen");
-  const bool last = position_ + 1 >= plan_.size();
-  return block.kind == Class::Slow && !waited_for && !last && postpone();
+  const StatusRead& read = asked();
+  const bool last = plan_.size() < 2;
+  return read.kind == StatusRead::Kind::Slow && !slow_.waitedFor(read) && !last && postpone();
 }
 
 /// The read at hand is not to be had now. Without a slow one the refresh goes on, without a fast one it has no result.
 bool Refresh::postpone()
 {
-  Block& block = blocks_[plan_[position_]];
-  if (block.kind != Class::Slow)
+  StatusRead& read = reads_[plan_.front()];
+  if (read.kind != StatusRead::Kind::Slow)
   {
-    run_refused_ = tellsRun(block);
+    run_refused_ = read.tellsRun();
     failed();
     return false;
   }
-  block.left_out_until = asked_at_ + seconds(POSTPONED_S);
+  read.left_out_until = asked_at_ + seconds(POSTPONED_S);
   return advance();
 }
 
 void Refresh::failed()
 {
   // A slow read that gets lost must not stand before the run words of the next refresh again.
-  if (position_ < plan_.size() && blocks_[plan_[position_]].kind == Class::Slow)
+  if (!plan_.empty() && asked().kind == StatusRead::Kind::Slow)
   {
-    blocks_[plan_[position_]].left_out_until = asked_at_ + seconds(POSTPONED_S);
+    reads_[plan_.front()].left_out_until = asked_at_ + seconds(POSTPONED_S);
   }
   plan_.clear();
-  position_ = 0;
 }
 
 bool Refresh::takeComplete()
@@ -438,99 +235,55 @@ bool Refresh::takeComplete()
 
 drive::Monitor Refresh::monitor(TimePoint now) const
 {
-  drive::Monitor monitor = fresh_;
-  for (const Block& block : blocks_)
-  {
-    if (block.kind == Class::Slow && block.ever && now - block.last <= seconds(OLDEST_SLOW_VALUE_S))
-    {
-      mergeMonitor(block.values, monitor);
-    }
-  }
+  drive::Monitor monitor = fresh_.monitor;
+  reads_.addSlowValues(now, monitor);
   return monitor;
 }
 
-const drive::Monitor& Refresh::fresh() const
+const StatusWords& Refresh::fresh() const
 {
   return fresh_;
 }
 
-TimePoint Refresh::freshSentAt() const
+const StatusWords& Refresh::words() const
 {
-  return fresh_sent_at_;
+  return draft_.words();
 }
 
-const drive::Monitor& Refresh::words() const
+bool Refresh::asksForWarning(TimePoint now) const
 {
-  return scratch_;
+  return slow_.asksForWarning(reads_, now);
 }
 
 void Refresh::restartNoted()
 {
-  scratch_.restarted.reset();
+  draft_.restartNoted();
 }
 
-void Refresh::suspectRestart()
+SlowTurns& Refresh::slow()
 {
-  restart_suspected_ = true;
+  return slow_;
 }
 
-void Refresh::askForRun()
-{
-  run_heard_ = false;
-}
-
-TimePoint Refresh::wordsSentAt() const
-{
-  return scratch_sent_at_;
-}
-
-TimePoint Refresh::stamp() const
+const std::optional<TimePoint>& Refresh::stamp() const
 {
   return stamp_;
 }
 
-bool Refresh::hasStamp() const
-{
-  return has_stamp_;
-}
-
 void Refresh::forget()
 {
-  failed();
-  fresh_ = drive::Monitor();
+  plan_.clear();
+  fresh_.monitor = drive::Monitor();
   complete_ = false;
-  run_heard_ = false;
-  restart_suspected_ = false;
-  block_.reset();
-  chosen_values_.clear();
-  // Reads that were split or left out are tried in full again.
-  buildBlocks();
+  slow_.forget();
+  chosen_.forget();
+  // Reads that were left out, or split for another reason than a hole, are tried in full again.
+  reads_.forget();
 }
 
-std::vector<drive::ReadBlock> Refresh::fastBlocks() const
+const StatusReads& Refresh::reads() const
 {
-  std::vector<drive::ReadBlock> reads;
-  for (const Block& block : blocks_)
-  {
-    if (block.kind == Class::Fast)
-    {
-      reads.push_back(block.read);
-    }
-  }
-  return reads;
-}
-
-std::vector<drive::ReadBlock> Refresh::slowBlocks() const
-{
-  std::vector<drive::ReadBlock> reads;
-  for (const Block& block : blocks_)
-  {
-    if (block.kind == Class::Slow)
-    {
-      reads.push_back(block.read);
-    }
-  }
-  return reads;
+  return reads_;
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -4,13 +4,13 @@
 #define INVERTER_BUS_BUS_REFRESH_H
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "inverter_bus/bus/types.h"
+#include "bus/inverter/chosen_block.h"
+#include "bus/inverter/slow_turns.h"
+#include "bus/inverter/status_draft.h"
+#include "bus/inverter/status_reads.h"
 
 namespace inverter_bus
 {
@@ -18,28 +18,28 @@ namespace bus
 {
 /// The status refresh of one inverter: which read is next, and what the drive has said so far with the time of each word.
 ///
-/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and at most one slow block that is
-/// due. Values belong to the stamp only if they came in one refresh; slow ones leave the status when they are older than
-/// one second (contract, section 2).
+/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and the slow block whose turn it is.
+/// Values belong to the stamp only if they came in one refresh; slow ones have an age of their own (contract, section 2 and
+/// 8.3).
 class Refresh
 {
 public:
-  Refresh(const drive::Drive& drive, std::uint8_t station);
+  /// \p drive must outlive it.
+  explicit Refresh(const drive::Drive& drive);
 
   /// Percent of these become A and V; without them such values stay empty.
   void setRatings(const drive::Ratings& ratings);
   /// Reads the words that the user chose in one exchange, and beside it only what that read doesn't bring; empty: direct
   /// reads. A refresh under way starts again if this changes anything.
   void useBlock(const std::optional<drive::ReadBlock>& block);
-  /// The read of chosen words, while it is in use.
-  const std::optional<drive::ReadBlock>& block() const;
+  const ChosenBlock& chosen() const;
   /// The drive has refused the read of chosen words, or it brought something else than what was chosen; true once.
   bool takeBlockRefusal();
-  /// Titles and values of chosen words that no status field shows.
-  const std::vector<std::pair<std::string, std::string>>& chosenValues() const;
 
-  /// The read that is due; starts a new refresh when none is under way.
-  const drive::ReadBlock& next(TimePoint now);
+  /// The read that is due; starts a new refresh when none is under way, with what \p leave allows of slow values.
+  const drive::ReadBlock& next(TimePoint now, const SlowLeave& leave = SlowLeave());
+  /// That read, until its end is told.
+  const StatusRead& asked() const;
 
   /// The drive has just refused a read of its run words that can't be had in another form; true once.
   bool takeRefusal();
@@ -56,95 +56,44 @@ public:
   /// Everything that may be shown at \p now.
   drive::Monitor monitor(TimePoint now) const;
   /// The run words of the last complete refresh and when their request left.
-  const drive::Monitor& fresh() const;
-  TimePoint freshSentAt() const;
+  const StatusWords& fresh() const;
   /// The same of the refresh under way: what has come so far.
-  const drive::Monitor& words() const;
-  TimePoint wordsSentAt() const;
+  const StatusWords& words() const;
   /// Leaves the read at hand out for a while if it is one of the slow values; false: it is not, or nothing follows it.
   bool skipSlow();
-  /// The marker of a restart that was just read is dealt with: the rest of this refresh must not find it once more, after
-  /// the drive has been told what it had forgotten.
+  /// The drive's warning word is the next slow value to be read, on this bus.
+  bool asksForWarning(TimePoint now) const;
+  /// The marker of a restart that was just read is dealt with.
   void restartNoted();
-  /// The drive may have been switched off and on: whether it was is read before any other slow value.
-  void suspectRestart();
-  /// Whether our RUN is still in force is read before any other slow value.
-  void askForRun();
-  TimePoint stamp() const;
-  bool hasStamp() const;
+  /// What goes before all other slow values.
+  SlowTurns& slow();
+  /// Of the last complete refresh; empty: none since the program began.
+  const std::optional<TimePoint>& stamp() const;
   /// Nothing that was read counts any more (inverter offline).
   void forget();
-  /// All blocks of one refresh without slow ones, for costs.
-  std::vector<drive::ReadBlock> fastBlocks() const;
-  /// Slow blocks in use.
-  std::vector<drive::ReadBlock> slowBlocks() const;
+  /// All of one refresh, for costs.
+  const StatusReads& reads() const;
 
 private:
-  enum class Class
-  {
-    Fast,
-    Fault,
-    Slow
-  };
-  struct Block
-  {
-    drive::ReadBlock read;
-    Class kind;
-    TimePoint last;
-    bool ever = false;
-    TimePoint left_out_until;
-    drive::Monitor values;
-  };
-  void plan(TimePoint now);
-  void planSlow(TimePoint now);
-  bool goesFirst(const Block& block) const;
-  void buildBlocks();
-  void takeRunWords(const Block& block, const wire::Reply& reply);
-  bool isChosenWord(const Block& block, const wire::Reply& reply) const;
-  bool dropBlock();
-  void planFaultReads();
-  bool tellsRun(const Block& block) const;
-  bool leaveOut(std::size_t index, const wire::Reply& reply);
+  void plan(TimePoint now, const SlowLeave& leave);
+  bool leaveOut(const wire::Reply& reply);
   bool advance();
   bool postpone();
 
   const drive::Drive& drive_;
-  std::uint8_t station_;
-  std::vector<Block> blocks_;
+  StatusReads reads_;
+  SlowTurns slow_;
+  ChosenBlock chosen_;
+  StatusDraft draft_;
+  /// The reads of the refresh under way, those that are left at the end; empty: none is under way.
   std::vector<std::size_t> plan_;
-  std::size_t position_ = 0;
-  std::size_t slow_cursor_ = 0;
-  drive::Monitor scratch_;
-  TimePoint scratch_sent_at_;
-  TimePoint scratch_stamp_;
   TimePoint asked_at_;
-  bool fault_planned_ = false;
-  /// A run word was read in the refresh under way.
-  bool run_read_ = false;
-  bool run_refused_ = false;
-  drive::Monitor fresh_;
-  TimePoint fresh_sent_at_;
-  TimePoint stamp_;
-  bool has_stamp_ = false;
-  bool complete_ = false;
+  StatusWords fresh_;
+  std::optional<TimePoint> stamp_;
   drive::Ratings ratings_;
-  std::optional<drive::ReadBlock> block_;
-  std::vector<std::pair<std::string, std::string>> chosen_values_;
-  /// It has brought the same status word as a direct read before it.
-  bool block_proven_ = false;
-  bool block_refused_ = false;
-  unsigned block_refusals_ = 0;
-  /// The slow words that decide over safety have come since the last return.
-  bool run_heard_ = false;
-  /// An exchange got lost since the marker of a restart was read.
-  bool restart_suspected_ = false;
+  bool run_refused_ = false;
+  bool complete_ = false;
 };
-
-/// Splits a read in two at the widest gap between its values; a block of one value stays as it is.
-std::vector<drive::ReadBlock> splitBlock(const drive::Drive& drive, const drive::ReadBlock& block);
-
-/// Adds what \p from knows to \p to.
-void mergeMonitor(const drive::Monitor& from, drive::Monitor& to);
 }  // namespace bus
 }  // namespace inverter_bus
 

@@ -44,10 +44,9 @@ void showError(const Inverter& inverter, TimePoint now, InverterStatus& status)
   }
   else if (inverter.command_error.id() != 0)
   {
-    Obstacles obstacles = inverter.obstacles();
-    obstacles.locked = inverter.interlock.locked(now);
     status.error_id = inverter.command_error.id();
-    status.error_text = inverter.command_error.text(obstacles, exchange_failed ? exchangeText(inverter) : "");
+    status.error_text =
+        inverter.command_error.text(inverter.obstacles(now), exchange_failed ? exchangeText(inverter) : "");
   }
   else if (exchange_failed)
   {
@@ -93,7 +92,7 @@ std::vector<Finding> errorsOf(const Inverter& inverter, TimePoint now)
   }
   if (inverter.interlock.isFaulted())
   {
-    const drive::Monitor& told = inverter.refresh.fresh();
+    const drive::Monitor& told = inverter.refresh.fresh().monitor;
     const std::uint16_t code = told.fault_code.value_or(0);
     const std::string why =
         told.unknown_trip ? inverter.drive.tripText(told) : std::to_string(code) + " " + inverter.drive.faultText(code);
@@ -123,7 +122,7 @@ std::vector<std::string> profileWarnings(const Inverter& inverter)
     warnings.push_back("unconfirmed in the profile: " + inverter.drive.unconfirmedText());
   }
   const auto slots = profile.block ? inverter.settings.blockSlots() : std::nullopt;
-  if (slots && !inverter.refresh.block())
+  if (slots && !inverter.refresh.chosen().read())
   {
     warnings.push_back(inverter.block_transfer.whyNot(*slots));
   }
@@ -144,19 +143,20 @@ InverterStatus statusOf(const Inverter& inverter, TimePoint now)
   const bool answered_lately = last_answer && now - *last_answer < seconds(LATELY_S);
   status.index = inverter.index;
   status.model = inverter.settings.model();
-  status.stamp = inverter.refresh.stamp();
-  status.has_stamp = inverter.refresh.hasStamp();
+  status.stamp = inverter.refresh.stamp().value_or(TimePoint());
+  status.has_stamp = inverter.refresh.stamp().has_value();
   status.communication_error = inverter.link.offline();
   status.refuses = inverter.link.offline() && inverter.liveness.refusesForTheMoment() && answered_lately;
   if (!status.communication_error)
   {
     status.monitor = inverter.refresh.monitor(now);
+    status.slow_age = inverter.refresh.reads().slowAge(now);
   }
   status.run_command = inverter.movement.runCommand();
   status.move_velocity_active = inverter.movement.active();
   status.reset_active = inverter.services.resetting();
   status.stop_active = inverter.stop.pending();
-  status.locked = inverter.interlock.locked(now);
+  status.locked = inverter.obstacles(now).locked;
   showError(inverter, now, status);
   const auto& target = inverter.movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
@@ -205,10 +205,14 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   values.emplace_back("drive", profile.name);
   values.emplace_back("model", profile.title);
   values.emplace_back("age of status",
-                      refresh.hasStamp() ? util::durationText(now - refresh.stamp()) : std::string("no status yet"));
+                      refresh.stamp() ? util::durationText(now - *refresh.stamp()) : std::string("no status yet"));
+  const std::optional<Duration> slow_age = refresh.reads().slowAge(now);
+  values.emplace_back("slow values", slow_age ? "read every " + util::durationText(refresh.reads().slowPeriod()) +
+                                                    ", the oldest is of " + util::durationText(*slow_age) + " ago"
+                                              : std::string("not read yet"));
   values.emplace_back("slowest reply", util::durationText(inverter.link.slowestReply()));
   values.emplace_back("returns", std::to_string(inverter.link.returns()));
-  values.emplace_back("locked", inverter.interlock.locked(now) ? "yes" : "no");
+  values.emplace_back("locked", inverter.obstacles(now).locked ? "yes" : "no");
   values.emplace_back("own reply delay", util::durationText(inverter.settings.replyDelay()));
   if (profile.writes == drive::Writes::Eeprom || inverter.drive.wears("frequency"))
   {
@@ -217,9 +221,9 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   if (profile.block)
   {
     values.emplace_back("block read",
-                        refresh.block() ? "in use: " + util::joined(inverter.config.block_read) : "not used");
+                        refresh.chosen().read() ? "in use: " + util::joined(inverter.config.block_read) : "not used");
   }
-  for (const auto& value : refresh.chosenValues())
+  for (const auto& value : refresh.chosen().values())
   {
     values.push_back(value);
   }

@@ -54,7 +54,7 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
     return pick;
   }
   ++epoch_;
-  if (pick.what == Pick::What::Command)
+  if (pick.isCommand())
   {
     find(pick.command)->served = pick.inverter;
   }
@@ -69,6 +69,8 @@ Pick Scheduler::next(TimePoint now, const std::vector<InverterView>& views, cons
   {
     bookStop(pick, views);
   }
+  const bool settles = pick.what == Pick::What::Refresh && views[pick.inverter].connect_due;
+  pick.what = settles ? Pick::What::Connect : pick.what;
   return pick;
 }
 
@@ -358,7 +360,7 @@ std::optional<Pick> Scheduler::pickCommand(TimePoint now, bool urgent_only) cons
     return std::nullopt;
   }
   Pick pick;
-  pick.what = Pick::What::Command;
+  pick.what = ticket->command.kind == CommandKind::Velocity ? Pick::What::Velocity : Pick::What::Service;
   pick.command = ticket->command.id;
   pick.inverter = nextMember(*ticket);
   return pick;
@@ -523,7 +525,7 @@ std::optional<Pick> Scheduler::pickBackground(const std::vector<InverterView>& v
     if (index != avoided_ && views[index].background && !views[index].offline)
     {
       Pick pick;
-      pick.what = Pick::What::Background;
+      pick.what = Pick::What::Setting;
       pick.inverter = index;
       return pick;
     }
@@ -577,21 +579,19 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
   {
     patient_until_ = answered ? end : end + (end - start);
   }
-  last_command_ = pick.what == Pick::What::Command ? pick.command : 0;
-  switch (pick.what)
+  last_command_ = pick.isCommand() ? pick.command : 0;
+  if (pick.isCommand())
   {
-    case Pick::What::Command:
-      doneCommand(pick, more);
-      break;
-    case Pick::What::Refresh:
-      doneRefresh(pick, more, answered);
-      break;
-    case Pick::What::Background:
-      exchanges_without_background_ = 0;
-      background_cursor_ = pick.inverter + 1;
-      break;
-    default:
-      break;
+    doneCommand(pick, more);
+  }
+  else if (pick.inTurnOfRefresh())
+  {
+    doneRefresh(pick, more, answered);
+  }
+  else if (pick.what == Pick::What::Setting)
+  {
+    exchanges_without_background_ = 0;
+    background_cursor_ = pick.inverter + 1;
   }
 }
 

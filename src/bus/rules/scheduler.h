@@ -63,6 +63,8 @@ struct InverterView
   TimePoint refresh_not_before;
   /// Latest start of the next exchange if the drive's own communication time-out shall not strike.
   std::optional<TimePoint> serve_by;
+  /// Something is to be settled before its status: it goes in the refresh's turn.
+  bool connect_due = false;
   /// Single exchanges of long jobs wait (settings to be read).
   bool background = false;
   /// No frame of its stop before this time: one is in the gateway.
@@ -84,7 +86,7 @@ struct Gate
   bool bare_probes = true;
 };
 
-/// The scheduler's decision.
+/// The next exchange, and what it is for: decides which activity composes it, hears of its end, and how it is booked.
 struct Pick
 {
   enum class What
@@ -93,17 +95,28 @@ struct Pick
     Nothing,
     /// The stop of an inverter (its write, its read-back, or as the probe of an offline one).
     Stop,
-    /// A frame of the command \ref command.
-    Command,
+    /// The stop of all in one frame. Not the scheduler's choice: it goes before whatever that would choose.
+    Broadcast,
+    /// A frame of the velocity \ref command.
+    Velocity,
+    /// A frame of the service \ref command.
+    Service,
     Refresh,
+    /// What is settled before the first status, in the turn of a refresh.
+    Connect,
+    /// Any read that is allowed now, in the turn of a refresh, so that the drive's own time-out does not pass; its answer is
+    /// not used. Not the scheduler's choice: what stands in the way of the refresh shows when it is composed.
+    KeepAlive,
     /// Is an offline inverter back?
     Probe,
-    /// One exchange of a long job.
-    Background
+    /// A read of the drive's settings, in the lowest class.
+    Setting,
+    /// The frame that leaves the drive to its panel. Not the scheduler's choice: the end of the program has its own order.
+    Release
   };
   What what = What::Nothing;
-  /// Whom the exchange is for; of a grouped velocity the member whose turn it is. Who books another one in done() has
-  /// found that this one needed no frame.
+  /// Whom the exchange is for (a broadcast: nobody in particular); of a grouped velocity the member whose turn it is. Who
+  /// books another one in done() has found that this one needed no frame.
   std::size_t inverter = 0;
   CommandId command = 0;
   /// Paid from the probes' share of the bus time.
@@ -111,6 +124,17 @@ struct Pick
   /// Goes before its turn, because the drive's own time-out is near.
   bool deadline = false;
   TimePoint wake;
+
+  /// Takes the inverter's turn in the status cycle.
+  bool inTurnOfRefresh() const
+  {
+    return what == What::Refresh || what == What::Connect || what == What::KeepAlive;
+  }
+  /// A frame of something that users asked for, and that was pushed.
+  bool isCommand() const
+  {
+    return what == What::Velocity || what == What::Service;
+  }
 };
 
 /// Who goes next on the bus (contract, section 3). Pure: time comes in as an argument, a decision goes out; no clock, no
@@ -164,7 +188,7 @@ public:
   Pick next(TimePoint now, const std::vector<InverterView>& views, const Gate& gate = Gate());
 
   /// Books the end of the exchange that was picked.
-  /// \param more Refresh: the inverter's refresh needs another exchange. Command (velocity): its unit goes on.
+  /// \param more In the turn of a refresh: the inverter's refresh needs another exchange. Velocity: its unit goes on.
   /// \param answered a reply came (a probe that is answered costs nothing of the probes' share).
   void done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered);
 

@@ -12,7 +12,7 @@ namespace simulation
 {
 namespace
 {
-/// @param end the BCC, which doesn't count
+/// Up to \p end, the BCC, which doesn't count.
 std::uint8_t bccOf(Bytes::const_iterator begin, Bytes::const_iterator end)
 {
   std::uint8_t bcc = 0;

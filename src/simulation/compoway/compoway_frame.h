@@ -25,17 +25,17 @@ Bytes compowayFrame(const std::string& body);
 
 /// What a receiver makes of a stream of bytes: everything before an STX is nothing, a new STX starts afresh, the byte
 /// after ETX is the BCC.
-/// @return the first complete frame, STX to BCC, right or wrong; nothing: not complete
+/// The first complete frame of \p stream, STX to BCC, right or wrong; nothing: there is none.
 std::optional<Bytes> findCompowayFrame(const Bytes& stream);
 
-/// @param frame as findCompowayFrame() returns it
+/// What is between STX and ETX. \p frame as findCompowayFrame() returns it.
 std::string compowayBody(const Bytes& frame);
 bool compowayBccFits(const Bytes& frame);
 
-/// @return `digits` upper-case hexadecimal digits, the last ones of the value
+/// \p digits upper-case hexadecimal digits, the last ones of the value.
 std::string hexDigits(std::uint32_t value, int digits);
 
-/// @return nothing when a character is none of 0-9, A-F, or there are none or more than eight
+/// Nothing where a character is none of 0-9, A-F, or where there are none or more than eight.
 std::optional<std::uint32_t> fromHexDigits(const std::string& text);
 }  // namespace simulation
 }  // namespace inverter_bus

@@ -157,7 +157,7 @@ Bytes CompowaySlave::foreignReply(const Bytes& reply, bool other_station)
   return compowayFrame((is_read ? body : read_head) + "00000000");  // a read of one element more
 }
 
-/// @param[out] sub_address as it comes back
+/// The end code; \p sub_address becomes the one that comes back.
 std::string CompowaySlave::endCodeOf(const Bytes& frame, std::string& sub_address) const
 {
   const std::string body = compowayBody(frame);

@@ -52,6 +52,8 @@ struct CompowayLimits
 class CompowaySlave : public SimulatedDrive
 {
 public:
+  using Limits = CompowayLimits;
+
   CompowaySlave(std::string name, int station, std::uint64_t seed, TimePoint start, CompowayLimits limits);
 
   bool addressedBy(const Bytes& frame) const override;
@@ -64,32 +66,30 @@ protected:
   bool answersDamaged() const override;
   std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) override;
   bool isBroadcast(const Bytes& frame) const override;
-  /// @return MRC and SRC as one number: 0x0102
+  /// MRC and SRC as one number: 0x0102.
   std::optional<int> functionOf(const Bytes& frame) const override;
   Access accessOf(const Bytes& frame) const override;
-  /// @param code a response code; below 0100h an end code
+  /// \p code is a response code; below 0100h an end code.
   Answer exceptionAnswer(const Bytes& frame, int code) override;
   Bytes foreignReply(const Bytes& reply, bool other_station) override;
 
   /// From the end of the request to the reply.
   virtual Duration replyDelay() const = 0;
 
-  /// @name Variable areas, by type: C0 ... C3
-  /// @{
+  // Variable areas, by type: C0 to C3.
   virtual bool hasArea(std::uint8_t type) const = 0;
   virtual bool hasAddress(std::uint8_t type, std::uint32_t address) const = 0;
   virtual bool readOnly(std::uint8_t type) const = 0;
   /// Only existing addresses come here.
   virtual Response readVariables(std::uint8_t type, std::uint32_t address, std::size_t count,
                                  std::vector<std::uint32_t>& values) = 0;
-  /// @return true when each value lies in its setting range
+  /// Each value lies in its setting range.
   virtual bool accepts(std::uint8_t type, std::uint32_t address, const std::vector<std::uint32_t>& values) const = 0;
   /// Only existing addresses of a writable area and accepted values come here.
   virtual Response writeVariables(std::uint8_t type, std::uint32_t address,
                                   const std::vector<std::uint32_t>& values) = 0;
-  /// @}
 
-  /// @param code command code and related information, four hexadecimal digits
+  /// \p code: command code and related information, four hexadecimal digits.
   virtual Response operate(const std::string& code) = 0;
   /// Operating status and related information, four hexadecimal digits.
   virtual std::string controllerStatus() const = 0;

@@ -29,8 +29,7 @@ public:
     expired_ = false;
   }
 
-  /// @param timeout 0: supervision off
-  /// @return when it expires; nothing when it is off, not started or has expired
+  /// When it expires; nothing where it is off (\p timeout 0), has not started or has expired.
   std::optional<TimePoint> deadline(Duration timeout) const
   {
     if (timeout == Duration::zero() || !heard_ || expired_)
@@ -40,9 +39,12 @@ public:
     return *heard_ + timeout;
   }
 
-  void expire()
+  /// Expires when its \p timeout is over at \p now. True: just now, for the first time.
+  bool expireAt(TimePoint now, Duration timeout)
   {
-    expired_ = true;
+    const std::optional<TimePoint> due = deadline(timeout);
+    expired_ = expired_ || (due && *due <= now);
+    return due && *due <= now;
   }
 
   bool started() const
@@ -53,6 +55,12 @@ public:
   bool expired() const
   {
     return expired_;
+  }
+
+  /// In the words of `NAME show`.
+  const char* text(Duration timeout) const
+  {
+    return timeout == Duration::zero() ? "off" : (expired_ ? "expired" : (heard_ ? "running" : "waiting"));
   }
 
 private:

@@ -28,16 +28,16 @@ public:
 
   bool empty() const;
   const std::string& peek() const;
-  /// @param what names the missing word. @throws CommandError when there is none left
+  /// The next word; \p what names it where it is missing. \throws CommandError when there is none left
   std::string take(const std::string& what);
   /// Takes the next word if it is this one.
   bool takeIf(const std::string& word);
-  /// @throws CommandError when the word is no number in the range
+  /// \throws CommandError when the word is no number from \p minimum to \p maximum
   double takeNumber(const std::string& what, double minimum, double maximum);
-  /// @return fallback when no word is left or the next one is no number
+  /// \p fallback where no word is left or the next one is no number. \throws CommandError as takeNumber() for a number
   double takeNumberOr(double fallback, const std::string& what, double minimum, double maximum);
   bool takeOnOff(const std::string& what);
-  /// @throws CommandError when a word is left
+  /// \throws CommandError when a word is left
   void finish() const;
 
 private:

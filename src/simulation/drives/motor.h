@@ -34,17 +34,17 @@ public:
 
   void setRating(const MotorRating& rating);
   void setRamps(const Ramps& ramps);
-  /// @param load 1.0 = rated torque
+  /// \p load >= 0; 1 = rated torque.
   void setLoad(double load);
   double load() const;
 
-  /// From now on ramps to this output frequency, through zero where the direction changes.
-  /// @param hertz sign = direction; what is smaller than the start frequency means standstill
+  /// From now on ramps to this output frequency, through zero where the direction changes. The sign of \p hertz is the
+  /// direction; less than the start frequency means standstill.
   void rampTo(double hertz);
   /// Switches the output off at once (free run).
   void cut();
   void advance(double seconds);
-  /// @return [s] until the present piece of the ramp ends (target or standstill reached); 0 at constant speed
+  /// [s] until the present piece of the ramp ends (target or standstill reached); 0 at constant speed.
   double timeToNextCorner() const;
 
   double frequency() const;  ///< [Hz] of the output, signed; 0: output off

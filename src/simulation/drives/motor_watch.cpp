@@ -28,7 +28,7 @@ TimePoint nextLook(const Motor& motor, TimePoint now, TimePoint limit)
   return std::min(limit, now + (corner > 0.0 && corner < STEP ? seconds(corner) + Duration(1) : seconds(STEP)));
 }
 
-void appendMotor(const Motor& motor, KeyValues& values)
+void appendMotor(const Motor& motor, double current, KeyValues& values)
 {
   const double frequency = motor.frequency();
   values.emplace_back("frequency", twoDecimals(std::abs(frequency)));
@@ -36,7 +36,7 @@ void appendMotor(const Motor& motor, KeyValues& values)
   values.emplace_back("target", twoDecimals(motor.target()));
   values.emplace_back("running", motor.turning() ? "1" : "0");
   values.emplace_back("ramp", motor.accelerating() ? "accelerating" : (motor.decelerating() ? "decelerating" : "none"));
-  values.emplace_back("current", twoDecimals(motor.current()));
+  values.emplace_back("current", twoDecimals(current));
   values.emplace_back("load", twoDecimals(motor.load()));
   values.emplace_back("dc_voltage", twoDecimals(motor.dcVoltage()));
   values.emplace_back("temperature", twoDecimals(motor.temperature()));

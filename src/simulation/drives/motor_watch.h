@@ -21,10 +21,10 @@ constexpr double OVERCURRENT = 2.2;
 /// before `limit` when the motor stands.
 TimePoint nextLook(const Motor& motor, TimePoint now, TimePoint limit);
 
-/// What the motor really does, in the words of `NAME show`.
-void appendMotor(const Motor& motor, KeyValues& values);
+/// What the motor really does, in the words of `NAME show`. \p current [A] is what the drive measures.
+void appendMotor(const Motor& motor, double current, KeyValues& values);
 
-/// @return with two decimals: "50.00"
+/// With two decimals: "50.00".
 std::string twoDecimals(double value);
 }  // namespace simulation
 }  // namespace inverter_bus

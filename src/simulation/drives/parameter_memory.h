@@ -36,18 +36,18 @@ public:
   using Index = std::size_t;
   static constexpr Index NONE = static_cast<Index>(-1);
 
-  /// @throws std::invalid_argument when two parameters share a register or a code (a mistake in the table)
+  /// \throws std::invalid_argument when two parameters share a register or a code (a mistake in the table)
   explicit ParameterMemory(std::vector<Parameter> table);
 
-  /// @return NONE when there is no such parameter
+  /// NONE where there is no such parameter.
   Index find(const std::string& code) const;
-  /// @param number of either word. @return NONE when the register is no parameter
+  /// \p number of either word. NONE where the register is no parameter.
   Index at(std::uint16_t number) const;
 
   const Parameter& info(Index index) const;
   std::uint32_t ram(Index index) const;
   std::uint32_t eeprom(Index index) const;
-  /// @return true when the value lies in the parameter's range
+  /// The value lies in the parameter's range.
   bool accepts(Index index, std::uint32_t raw) const;
 
   void writeRam(Index index, std::uint32_t raw);
@@ -74,7 +74,7 @@ private:
   std::uint64_t stored_values_ = 0;
 };
 
-/// @return the raw value as the panel shows it: 1000 with two decimals is "10.00"
+/// The raw value as the panel shows it: 1000 with two decimals is "10.00".
 std::string panelText(const Parameter& parameter, std::uint32_t raw);
 }  // namespace simulation
 }  // namespace inverter_bus

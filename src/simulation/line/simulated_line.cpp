@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "simulation/compoway/compoway_frame.h"
+#include "simulation/line/wire.h"
 
 namespace inverter_bus
 {
@@ -30,14 +31,14 @@ std::string stationOf(const Bytes& frame, Protocol protocol)
 
 SimulatedLine::SimulatedLine(const LineOptions& options, TimePoint start)
   : options_(options)
-  , character_(options.settings.characterTime())
   , gap_(options.settings.frameGap())
   , end_(options.settings.frameEnd())
-  , random_(options.seed)
-  , last_activity_(start - std::chrono::hours(1))
-  , last_seen_(last_activity_)
+  , wire_(std::make_unique<Wire>(options.settings, options.seed, start - std::chrono::hours(1)))
+  , last_seen_(wire_->lastActivity())
 {
 }
+
+SimulatedLine::~SimulatedLine() = default;
 
 void SimulatedLine::attach(SimulatedDrive& drive)
 {
@@ -67,7 +68,7 @@ const LineOptions& SimulatedLine::options() const
 
 bool SimulatedLine::idle() const
 {
-  return live_.empty() && owed_.empty() && waiting_.empty();
+  return wire_->live().empty() && owed_.empty() && waiting_.empty();
 }
 
 void SimulatedLine::setEcho(bool on)
@@ -84,7 +85,7 @@ void SimulatedLine::setMaster(const LineSettings& settings, TimePoint now)
 {
   advance(now);
   options_.settings = settings;
-  character_ = settings.characterTime();
+  wire_->set(settings);
   gap_ = settings.frameGap();
   end_ = settings.frameEnd();
   for (SimulatedDrive* drive : drives_)
@@ -98,101 +99,28 @@ void SimulatedLine::setConnected(bool connected, TimePoint now)
   advance(now);
   connected_ = connected;
   output_.clear();
-  Transmission* sending = openRequest(Source::Master);
+  Transmission* sending = wire_->openRequest(Source::Master);
   if (!connected && sending != nullptr)
   {
-    std::vector<WireByte>& bytes = sending->bytes;
-    bytes.erase(std::remove_if(bytes.begin(), bytes.end(), [now](const WireByte& byte) { return byte.start > now; }),
-                bytes.end());
-    last_activity_ = std::min(last_activity_, std::max(now, endOf(*sending)));
+    wire_->breakOff(*sending, now);
   }
-}
-
-bool SimulatedLine::isRequest(const Transmission& transmission)
-{
-  return transmission.source == Source::Master || transmission.source == Source::ForeignMaster;
-}
-
-TimePoint SimulatedLine::endOf(const Transmission& transmission) const
-{
-  return transmission.bytes.empty() ? TimePoint() : transmission.bytes.back().start + character_;
 }
 
 TimePoint SimulatedLine::dueTime(const Transmission& transmission) const
 {
-  const TimePoint end = endOf(transmission);
+  const TimePoint end = wire_->endOf(transmission);
   if (transmission.for_master && transmission.delivered < transmission.bytes.size())
   {
-    const TimePoint first = transmission.bytes[transmission.delivered].start + character_;
+    const TimePoint first = transmission.bytes[transmission.delivered].start + wire_->characterTime();
     const bool whole = options_.delivery_step == Duration::zero();
     return whole ? end : std::min(end, first + options_.delivery_step);
   }
-  return isRequest(transmission) ? end + end_ : end;
+  return transmission.isRequest() ? end + end_ : end;
 }
 
-SimulatedLine::Transmission& SimulatedLine::open(Source source)
+void SimulatedLine::send(Transmission& transmission, const Bytes& bytes, TimePoint start)
 {
-  live_.emplace_back();
-  live_.back().source = source;
-  return live_.back();
-}
-
-SimulatedLine::Transmission* SimulatedLine::openRequest(Source source)
-{
-  for (Transmission& transmission : live_)
-  {
-    if (transmission.source == source && !transmission.served)
-    {
-      return &transmission;
-    }
-  }
-  return nullptr;
-}
-
-void SimulatedLine::append(Transmission& transmission, const Bytes& bytes, TimePoint start)
-{
-  const std::size_t first = transmission.bytes.size();
-  const unsigned int sent_bits = options_.settings.data_bits == 7 ? 0x7FU : 0xFFU;
-  for (const std::uint8_t value : bytes)
-  {
-    transmission.bytes.push_back({ start, static_cast<std::uint8_t>(value & sent_bits), false });
-    start += character_;
-  }
-  collide(transmission, first);
-  last_activity_ = std::max(last_activity_, start);
-}
-
-void SimulatedLine::collide(Transmission& added, std::size_t first)
-{
-  const auto damage = [this](Transmission& transmission, WireByte& byte) {
-    if (!byte.damaged)
-    {
-      byte.damaged = true;
-      byte.value = static_cast<std::uint8_t>(byte.value ^ random_.damage());
-    }
-    counters_.collisions += transmission.collided ? 0 : 1;
-    transmission.collided = true;
-  };
-  for (Transmission& other : live_)
-  {
-    if (&other == &added || other.bytes.empty() || endOf(other) <= added.bytes[first].start ||
-        other.bytes.front().start >= endOf(added))
-    {
-      continue;
-    }
-    for (std::size_t i = first; i < added.bytes.size(); ++i)
-    {
-      for (WireByte& byte : other.bytes)
-      {
-        const TimePoint start = added.bytes[i].start;
-        if (byte.start < start + character_ && start < byte.start + character_)
-        {
-          damage(added, added.bytes[i]);
-          damage(other, byte);
-        }
-      }
-    }
-  }
+  counters_.collisions += wire_->append(transmission, bytes, start);
 }
 
 void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
@@ -202,10 +130,10 @@ void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
   {
     return;
   }
-  Transmission* sending = openRequest(Source::Master);
-  const bool next_frame = sending != nullptr && wholeForAny(valuesOf(*sending));
-  const TimePoint start = sending == nullptr ? now : std::max(now, endOf(*sending));
-  const bool in_time = sending != nullptr && now + options_.gap_tolerance >= endOf(*sending) + gap_;
+  Transmission* sending = wire_->openRequest(Source::Master);
+  const bool next_frame = sending != nullptr && wholeForAny(sending->values());
+  const TimePoint start = sending == nullptr ? now : std::max(now, wire_->endOf(*sending));
+  const bool in_time = sending != nullptr && now + options_.gap_tolerance >= wire_->endOf(*sending) + gap_;
   if (next_frame && (in_time || options_.gap == GapRule::Ignore))
   {
     finishRequest(*sending);
@@ -213,13 +141,13 @@ void SimulatedLine::receive(const Bytes& bytes, TimePoint now)
   }
   if (sending == nullptr)
   {
-    const TimePoint silent_since = std::max(last_activity_, last_seen_);
-    sending = &open(Source::Master);
+    const TimePoint silent_since = std::max(wire_->lastActivity(), last_seen_);
+    sending = &wire_->open(Source::Master);
     sending->early = unfinished_.empty() && start + options_.gap_tolerance < silent_since + gap_;
     sending->for_master = echo_;
   }
   sending->joined = sending->joined || (next_frame && !sending->bytes.empty());
-  append(*sending, bytes, start);
+  send(*sending, bytes, start);
 }
 
 void SimulatedLine::sendForeign(const Bytes& frame, bool wait, TimePoint now)
@@ -227,7 +155,7 @@ void SimulatedLine::sendForeign(const Bytes& frame, bool wait, TimePoint now)
   advance(now);
   if (!frame.empty())
   {
-    waiting_.push_back({ wait ? std::max(now, last_activity_ + gap_) : now, frame });
+    waiting_.push_back({ wait ? std::max(now, wire_->lastActivity() + gap_) : now, frame });
     advance(now);
   }
 }
@@ -235,11 +163,9 @@ void SimulatedLine::sendForeign(const Bytes& frame, bool wait, TimePoint now)
 void SimulatedLine::sendNoise(std::size_t count, TimePoint now)
 {
   advance(now);
-  Bytes bytes(count);
-  std::generate(bytes.begin(), bytes.end(), [this] { return random_.byte(); });
-  if (!bytes.empty())
+  if (count > 0)
   {
-    append(open(Source::Noise), bytes, now);
+    send(wire_->open(Source::Noise), wire_->noise(count), now);
   }
 }
 
@@ -247,7 +173,7 @@ std::optional<TimePoint> SimulatedLine::nextEvent() const
 {
   std::optional<TimePoint> next;
   const auto consider = [&next](TimePoint time) { next = next ? std::min(*next, time) : time; };
-  for (const Transmission& transmission : live_)
+  for (const Transmission& transmission : wire_->live())
   {
     consider(dueTime(transmission));
   }
@@ -274,15 +200,15 @@ void SimulatedLine::process(TimePoint time)
 {
   processForeign(time);
   processOwed(time);
-  for (std::size_t i = 0; i < live_.size(); ++i)
+  for (std::size_t i = 0; i < wire_->live().size(); ++i)
   {
-    if (dueTime(live_[i]) <= time)
+    Transmission& transmission = wire_->live()[i];
+    if (dueTime(transmission) <= time)
     {
-      processTransmission(live_[i], time);
+      processTransmission(transmission, time);
     }
   }
-  live_.erase(std::remove_if(live_.begin(), live_.end(), [](const Transmission& one) { return one.over; }),
-              live_.end());
+  wire_->removeOver();
 }
 
 void SimulatedLine::processForeign(TimePoint time)
@@ -296,7 +222,7 @@ void SimulatedLine::processForeign(TimePoint time)
     const Bytes bytes = waiting_[i].bytes;
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(i));
     ++counters_.foreign;
-    append(open(Source::ForeignMaster), bytes, time);
+    send(wire_->open(Source::ForeignMaster), bytes, time);
     return;
   }
 }
@@ -312,9 +238,9 @@ void SimulatedLine::processOwed(TimePoint time)
     owed.drive->advance(time);
     if (owed.drive->canSend() && !silent_ && !owed.bytes.empty())
     {
-      Transmission& reply = open(Source::Drive);
+      Transmission& reply = wire_->open(Source::Drive);
       reply.drive = owed.drive;
-      append(reply, owed.bytes, owed.start);
+      send(reply, owed.bytes, owed.start);
     }
   }
 }
@@ -330,7 +256,7 @@ void SimulatedLine::processTransmission(Transmission& transmission, TimePoint ti
     return;
   }
   transmission.over = true;
-  if (isRequest(transmission))
+  if (transmission.isRequest())
   {
     finishRequest(transmission);
   }
@@ -346,11 +272,11 @@ void SimulatedLine::deliver(Transmission& transmission, TimePoint time)
   while (transmission.delivered < transmission.bytes.size())
   {
     const WireByte& byte = transmission.bytes[transmission.delivered];
-    if (byte.start + character_ > time)
+    if (byte.start + wire_->characterTime() > time)
     {
       break;
     }
-    delivery.time = byte.start + character_;
+    delivery.time = byte.start + wire_->characterTime();
     delivery.bytes.push_back(byte.value);
     ++transmission.delivered;
   }
@@ -371,17 +297,6 @@ std::vector<Delivery> SimulatedLine::takeOutput(TimePoint now)
   return output;
 }
 
-Bytes SimulatedLine::valuesOf(const Transmission& transmission)
-{
-  Bytes bytes;
-  bytes.reserve(transmission.bytes.size());
-  for (const WireByte& byte : transmission.bytes)
-  {
-    bytes.push_back(byte.value);
-  }
-  return bytes;
-}
-
 bool SimulatedLine::wholeForAny(const Bytes& frame) const
 {
   return std::any_of(drives_.begin(), drives_.end(),
@@ -391,11 +306,11 @@ bool SimulatedLine::wholeForAny(const Bytes& frame) const
 bool SimulatedLine::owes(const SimulatedDrive* drive) const
 {
   return std::any_of(owed_.begin(), owed_.end(), [drive](const Owed& owed) { return owed.drive == drive; }) ||
-         std::any_of(live_.begin(), live_.end(), [drive](const Transmission& one) { return one.drive == drive; });
+         std::any_of(wire_->live().begin(), wire_->live().end(),
+                     [drive](const Transmission& one) { return one.drive == drive; });
 }
 
-/// @param[in,out] bytes what was sent; the frame that the drives make of it
-/// @return false when they wait for more
+/// \p bytes are what was sent, and become the frame that the drives make of it. False: they wait for more.
 bool SimulatedLine::takeFrame(Bytes& bytes)
 {
   if (options_.settings.protocol == Protocol::ModbusRtu)
@@ -424,7 +339,7 @@ void SimulatedLine::finishRequest(Transmission& transmission)
   }
   transmission.served = true;
   counters_.requests += transmission.source == Source::Master ? 1 : 0;
-  Bytes frame = valuesOf(transmission);
+  Bytes frame = transmission.values();
   std::string remark;
   if (silent_)
   {
@@ -448,7 +363,7 @@ void SimulatedLine::finishRequest(Transmission& transmission)
   }
   else
   {
-    serve(transmission, frame, endOf(transmission) + end_, remark);
+    serve(transmission, frame, wire_->endOf(transmission) + end_, remark);
   }
   report(transmission, remark);
 }
@@ -513,7 +428,7 @@ void SimulatedLine::report(const Transmission& transmission, const std::string& 
     record.time = transmission.bytes.front().start;
     record.source = transmission.source;
     record.drive = transmission.drive != nullptr ? transmission.drive->name() : "";
-    record.bytes = valuesOf(transmission);
+    record.bytes = transmission.values();
     record.station = stationOf(record.bytes, options_.settings.protocol);
     record.remark = remark;
     observer_(record);

@@ -14,13 +14,13 @@ namespace simulation
 {
 /// CRC-16 of Modbus RTU (initial value FFFFh, reflected polynomial A001h), written here once more on purpose: the
 /// simulated drives share no code with the driver.
-/// @param count how many of the bytes count; must not exceed bytes.size()
+/// Of the first \p count bytes, at most bytes.size().
 std::uint16_t modbusCrc(const Bytes& bytes, std::size_t count);
 
 /// Appends the CRC, low byte first.
 Bytes withModbusCrc(Bytes bytes);
 
-/// @return true for at least four bytes (station, function, CRC) whose CRC fits
+/// There are at least four bytes (station, function, CRC), and the CRC fits.
 bool modbusCrcFits(const Bytes& frame);
 
 /// 16 bit, high byte first. The caller makes sure that offset + 1 < frame.size().

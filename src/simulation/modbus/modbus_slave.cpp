@@ -22,7 +22,7 @@ constexpr std::uint8_t WRITE_COILS = 0x0F;
 constexpr std::uint8_t WRITE_REGISTERS = 0x10;
 constexpr std::uint8_t READ_WRITE = 0x17;
 
-/// @return false when the frame is not as long as its function code and byte count say (no answer then)
+/// The frame is as long as its function code and byte count say; else there is no answer.
 bool lengthFits(const Bytes& frame)
 {
   const std::size_t size = frame.size();
@@ -63,6 +63,16 @@ void appendHead(const Bytes& frame, Bytes& reply, std::size_t size)
 ModbusSlave::ModbusSlave(std::string name, int station, std::uint64_t seed, TimePoint start, ModbusLimits limits)
   : SimulatedDrive(std::move(name), station, seed, start), limits_(std::move(limits))
 {
+}
+
+ModbusException ModbusSlave::readCoils(std::uint16_t /*wire*/, std::uint16_t /*count*/, std::vector<bool>& /*values*/)
+{
+  return ModbusException::FunctionNotSupported;
+}
+
+ModbusException ModbusSlave::writeCoils(std::uint16_t /*wire*/, const std::vector<bool>& /*values*/)
+{
+  return ModbusException::FunctionNotSupported;
 }
 
 bool ModbusSlave::isGroup(std::uint8_t station) const

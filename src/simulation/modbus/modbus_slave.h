@@ -16,7 +16,8 @@ namespace inverter_bus
 namespace simulation
 {
 /// Exception codes. 01-03: Modbus Application Protocol V1.1b3, 7; 21h-23h: OMRON I578 and
-/// the MX2 manual's chapter 6; 26h: Hitachi SJ700D. A brand with others casts its number.
+/// the MX2 manual's chapter 6; 26h: Hitachi SJ700D; 31h, 32h: I585 p. 440, Hitachi WJ200 p. 551, 569. A brand with others
+/// casts its number.
 enum class ModbusException : std::uint8_t
 {
   None = 0x00,
@@ -26,7 +27,9 @@ enum class ModbusException : std::uint8_t
   ValueOutOfRange = 0x21,
   NotAllowedNow = 0x22,
   ReadOnly = 0x23,
-  EepromBusy = 0x26
+  EepromBusy = 0x26,
+  MappingFault = 0x31,
+  MappedHalf = 0x32
 };
 
 /// What a brand's Modbus offers.
@@ -46,6 +49,8 @@ struct ModbusLimits
 class ModbusSlave : public SimulatedDrive
 {
 public:
+  using Limits = ModbusLimits;
+
   ModbusSlave(std::string name, int station, std::uint64_t seed, TimePoint start, ModbusLimits limits);
 
   bool addressedBy(const Bytes& frame) const override;
@@ -60,20 +65,21 @@ protected:
   Answer exceptionAnswer(const Bytes& frame, int code) override;
   Bytes foreignReply(const Bytes& reply, bool other_station) override;
 
-  /// @return true when `station` addresses several drives and this one is among them; plain Modbus: 0
+  /// \p station addresses several drives and this one is among them; plain Modbus: 0.
   virtual bool isGroup(std::uint8_t station) const;
-  /// @return false for a broadcast that the drive passes over although its function code is one for broadcasts
+  /// False for a broadcast that the drive passes over although its function code is one for broadcasts.
   virtual bool takesBroadcast(const Bytes& frame) const;
   /// From the end of the request's silence to the reply.
   virtual Duration replyDelay() const = 0;
   /// A good request was heard (the drive's communication watchdog lives on this); before it is executed.
   virtual void heard(std::uint8_t function) = 0;
 
-  virtual ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values) = 0;
-  virtual ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values) = 0;
+  /// A brand without coils leaves these two as they are.
+  virtual ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values);
+  virtual ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values);
   virtual ModbusException readRegisters(std::uint16_t wire, std::uint16_t count,
                                         std::vector<std::uint16_t>& values) = 0;
-  /// @param function 06h, 10h or 17h, for drives that tell them apart
+  /// All of it or nothing. \p function is 06h, 10h or 17h, for drives that tell them apart.
   virtual ModbusException writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
                                          std::uint8_t function) = 0;
 

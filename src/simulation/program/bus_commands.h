@@ -50,7 +50,7 @@ class SimulatedBus;
 ///     NAME sto on|off                    safe torque off (MX2, RX: E37), where the drive has it
 ///     NAME load X                        1 = rated torque
 ///
-/// @return one line: "ok ..." or "error: ... (what is allowed)"; empty for an empty line
+/// The answer is one line, "ok ..." or "error: ... (what is allowed)", and empty for an empty line.
 std::string runCommand(SimulatedBus& bus, const std::string& line, TimePoint now);
 }  // namespace simulation
 }  // namespace inverter_bus

@@ -6,15 +6,12 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drive/monitor_fields.h"
 #include "support/bus_fixture.h"
 
 namespace inverter_bus
@@ -55,7 +52,7 @@ protected:
   /// The next read, answered 10 ms later as laid down. Returns the request.
   std::string exchange()
   {
-    const std::string request = printed(mx2_.read(1, refresh_.next(at(time_))));
+    const std::string request = printed(mx2_.read(1, refresh_.next(at(time_), leave_)));
     const int sent_at = time_;
     time_ += 10;
     const auto refusal = refused_.find(request);
@@ -87,7 +84,8 @@ protected:
   }
 
   const drive::Drive mx2_ = shipped("omron_mx2");
-  Refresh refresh_{ mx2_, 1 };
+  Refresh refresh_{ mx2_ };
+  SlowLeave leave_;
   int time_ = 0;
   bool more_ = false;
   /// Replies by request.
@@ -125,8 +123,9 @@ TEST_F(Mx2Refresh, eachLaterRefreshBringsAtMostOneSlowRead)
   EXPECT_THAT(refresh(), ElementsAre(COILS, REGISTERS));
 }
 
-TEST_F(Mx2Refresh, slowReadsComeAboutOnceASecond)
+TEST_F(Mx2Refresh, slowReadsComeOnceInTheirPeriod)
 {
+  leave_.period = Ms(2000);
   std::map<std::string, int> counts;
   while (time_ < 20000)
   {
@@ -137,11 +136,31 @@ TEST_F(Mx2Refresh, slowReadsComeAboutOnceASecond)
   }
   for (const std::string& slow : { WARNING, TORQUE_TO_TEMPERATURE, DC_VOLTAGE })
   {
-    EXPECT_THAT(counts[slow], AllOf(Ge(20), Le(27))) << slow;
+    EXPECT_THAT(counts[slow], AllOf(Ge(9), Le(10))) << slow;
   }
 }
 
-TEST_F(Mx2Refresh, slowValuesAreNeverMissingWhileTheCycleIsFast)
+TEST_F(Mx2Refresh, slowReadsWaitForTheirShareOfTheWire)
+{
+  leave_.open = false;
+  for (int count = 0; count < 10; ++count)
+  {
+    EXPECT_THAT(refresh(500), ElementsAre(COILS, REGISTERS));
+  }
+  leave_.open = true;
+  EXPECT_THAT(refresh(), ElementsAre(WARNING, COILS, REGISTERS));
+}
+
+TEST_F(Mx2Refresh, slowReadsNeverComeWithoutAPeriod)
+{
+  leave_.period = Duration{ 0 };
+  for (int count = 0; count < 10; ++count)
+  {
+    EXPECT_THAT(refresh(500), ElementsAre(COILS, REGISTERS));
+  }
+}
+
+TEST_F(Mx2Refresh, slowValuesAreNeverMissingWhileTheirPeriodIsShort)
 {
   while (time_ < 1000)
   {
@@ -162,6 +181,28 @@ TEST_F(Mx2Refresh, slowReadsTakeTurnsWhenTheCycleIsSlow)
   EXPECT_THAT(refresh(2000), Contains(TORQUE_TO_TEMPERATURE));
   EXPECT_THAT(refresh(2000), Contains(DC_VOLTAGE));
   EXPECT_THAT(refresh(2000), Contains(WARNING));
+}
+
+TEST_F(Mx2Refresh, warningWordIsReadNextWhenATripComesOrGoes)
+{
+  leave_.period = Ms(60000);
+  for (int count = 0; count < 5; ++count)
+  {
+    refresh();
+  }
+  ASSERT_THAT(refresh(), ElementsAre(COILS, REGISTERS));
+  answers_[COILS] = TRIPPED_COILS;
+  refresh();
+  EXPECT_TRUE(refresh_.asksForWarning(at(time_)));
+  leave_.open = false;
+  EXPECT_THAT(refresh(), ElementsAre(COILS, REGISTERS, FAULT)) << "within the share";
+  leave_.open = true;
+  EXPECT_THAT(refresh(), ElementsAre(WARNING, COILS, REGISTERS, FAULT));
+  EXPECT_FALSE(refresh_.asksForWarning(at(time_)));
+  EXPECT_THAT(refresh(), ElementsAre(COILS, REGISTERS, FAULT));
+  answers_[COILS] = RUNNING_COILS;
+  refresh();
+  EXPECT_THAT(refresh(), ElementsAre(WARNING, COILS, REGISTERS));
 }
 
 // --- values ----------------------------------------------------------------------------------------------------------
@@ -188,26 +229,29 @@ TEST_F(Mx2Refresh, whatWasNotReadYetIsNotKnown)
   EXPECT_FALSE(shown.torque);
 }
 
-TEST_F(Mx2Refresh, slowValuesLeaveTheStatusAfterOneSecond)
+TEST_F(Mx2Refresh, slowValuesLeaveTheStatusAfterTenSecondsOrTwoAndAHalfPeriods)
 {
   refresh();
   refresh();
   ASSERT_THAT(refresh(), Contains(TORQUE_TO_TEMPERATURE));
   const int read_at = time_ - 20;
-  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 1000)).output_voltage.value(), 200.5);
-  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 1000)).torque.value(), -5.0);
-  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 1000)).temperature.value(), 34.5);
-  EXPECT_FALSE(refresh_.monitor(at(read_at + 1001)).output_voltage);
-  EXPECT_FALSE(refresh_.monitor(at(read_at + 1001)).torque);
-  EXPECT_FALSE(refresh_.monitor(at(read_at + 1001)).temperature);
+  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 10000)).output_voltage.value(), 200.5);
+  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 10000)).torque.value(), -5.0);
+  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 10000)).temperature.value(), 34.5);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 10001)).output_voltage);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 10001)).torque);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 10001)).temperature);
+  leave_.period = Ms(6000);
+  refresh();
+  EXPECT_TRUE(refresh_.monitor(at(read_at + 15000)).torque);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 15001)).torque);
 }
 
 TEST_F(Mx2Refresh, stampIsTheArrivalOfTheLastFastReply)
 {
-  EXPECT_FALSE(refresh_.hasStamp());
+  EXPECT_FALSE(refresh_.stamp());
   time_ = 500;
   refresh();
-  EXPECT_TRUE(refresh_.hasStamp());
   EXPECT_EQ(refresh_.stamp(), at(520));
 }
 
@@ -217,7 +261,7 @@ TEST_F(Mx2Refresh, runWordsAreAsOldAsTheirRequest)
   time_ = 500;
   refresh();
   // The warning goes before the coils.
-  EXPECT_EQ(refresh_.freshSentAt(), at(510));
+  EXPECT_EQ(refresh_.fresh().sent_at, at(510));
 }
 
 TEST_F(Mx2Refresh, isCompleteOnceAfterTheLastRead)
@@ -291,8 +335,8 @@ TEST_F(Mx2Refresh, reasonOfATripIsReadInTheFirstRefreshThatShowsIt)
   const Frames frames = refresh();
   EXPECT_EQ(frames.back(), FAULT);
   EXPECT_TRUE(refresh_.takeComplete());
-  EXPECT_EQ(refresh_.fresh().faulted, true);
-  EXPECT_EQ(refresh_.fresh().fault_code, 12);
+  EXPECT_EQ(refresh_.fresh().monitor.faulted, true);
+  EXPECT_EQ(refresh_.fresh().monitor.fault_code, 12);
   EXPECT_EQ(monitor().fault_code, 12);
 }
 
@@ -350,6 +394,23 @@ TEST_F(Mx2Refresh, refusedSingleValueIsLeftOutForHalfAMinute)
   time_ = 31000;
   EXPECT_THAT(refresh(), Contains(FREQUENCY));
   EXPECT_DOUBLE_EQ(monitor().output_frequency.value(), 50.0);
+}
+
+TEST_F(Mx2Refresh, readAcrossAHoleIsCutForGood)
+{
+  refused_[TORQUE_TO_TEMPERATURE] = 3;
+  for (int count = 0; count < 8; ++count)
+  {
+    refresh();
+  }
+  refresh_.forget();
+  Frames all;
+  for (int count = 0; count < 8; ++count)
+  {
+    const Frames frames = refresh();
+    all.insert(all.end(), frames.begin(), frames.end());
+  }
+  EXPECT_THAT(all, AllOf(Contains(TORQUE_AND_VOLTAGE), Contains(TEMPERATURE), Not(Contains(TORQUE_TO_TEMPERATURE))));
 }
 
 TEST_F(Mx2Refresh, refusedSlowBlockIsCutAtItsWidestGap)
@@ -410,52 +471,6 @@ TEST_F(Mx2Refresh, driveThatRefusesEverythingIsStillAskedForSomething)
     refresh_.refused(exception(request[4] == '1' ? 0x81 : 0x83, 0x02, at(time_)));
   }
   EXPECT_FALSE(monitor().output_frequency);
-}
-
-TEST(Refresh, fastAndSlowReadsOfTheMx2AreKnownForCosts)
-{
-  const drive::Drive mx2 = shipped("omron_mx2");
-  const Refresh refresh(mx2, 1);
-  EXPECT_EQ(refresh.fastBlocks().size(), 2U);
-  EXPECT_EQ(refresh.slowBlocks().size(), 3U);
-}
-
-TEST(Refresh, singleValueCannotBeSplit)
-{
-  const drive::Drive mx2 = shipped("omron_mx2");
-  ASSERT_EQ(mx2.faultBlocks().size(), 1U);
-  EXPECT_EQ(splitBlock(mx2, mx2.faultBlocks().front()).size(), 1U);
-}
-
-TEST(Refresh, mergingKeepsWhatIsKnownAndTakesWhatIsNew)
-{
-  drive::Monitor to;
-  to.run_seen = true;
-  to.output_current = 1.0;
-  drive::Monitor from;
-  from.output_current = 2.0;
-  from.torque = 3.0;
-  mergeMonitor(from, to);
-  EXPECT_EQ(to.run_seen, true);
-  EXPECT_DOUBLE_EQ(to.output_current.value(), 2.0);
-  EXPECT_DOUBLE_EQ(to.torque.value(), 3.0);
-}
-
-TEST(MergeMonitor, forgetsNoField)
-{
-  // That as many fields are listed as there are is asserted where the list is; none may stand for another.
-  const drive::Monitor empty;
-  const auto fields = drive::monitorFields(empty);
-  const auto places = std::apply(
-      [](const auto&... field) { return std::set<const void*>{ static_cast<const void*>(&field)... }; }, fields);
-  EXPECT_EQ(places.size(), std::tuple_size<decltype(fields)>::value);
-  drive::Monitor from;
-  std::apply([](auto&... field) { ((field = 1), ...); }, drive::monitorFields(from));
-  drive::Monitor to;
-  mergeMonitor(from, to);
-  const auto merged = drive::monitorFields(to);
-  std::apply([](const auto&... field) { EXPECT_TRUE((field && ...)); }, merged);
-  EXPECT_EQ(merged, drive::monitorFields(from));
 }
 }  // namespace
 }  // namespace bus

@@ -147,9 +147,13 @@ public:
 
   static std::string name(const Pick& pick)
   {
-    const bool command = pick.what == Pick::What::Command;
-    return std::string(1, "-SCRPB"[static_cast<int>(pick.what)]) +
-           std::to_string(command ? pick.command : static_cast<CommandId>(pick.inverter));
+    const std::map<Pick::What, std::string> letters{
+      { Pick::What::Nothing, "-" }, { Pick::What::Stop, "S" },    { Pick::What::Velocity, "C" },
+      { Pick::What::Service, "C" }, { Pick::What::Refresh, "R" }, { Pick::What::Connect, "N" },
+      { Pick::What::Probe, "P" },   { Pick::What::Setting, "B" },
+    };
+    return letters.at(pick.what) +
+           std::to_string(pick.isCommand() ? pick.command : static_cast<CommandId>(pick.inverter));
   }
 
   Scheduler scheduler;
@@ -166,11 +170,11 @@ public:
 private:
   bool moreOf(const Pick& pick)
   {
-    if (pick.what == Pick::What::Command)
+    if (pick.isCommand())
     {
       return --frames_.at(pick.command) > 0;
     }
-    if (pick.what == Pick::What::Refresh)
+    if (pick.inTurnOfRefresh())
     {
       reads_done_[pick.inverter] = (reads_done_[pick.inverter] + 1) % reads_per_refresh;
       return reads_done_[pick.inverter] != 0;
@@ -244,6 +248,44 @@ TEST(Scheduler, sendsAStopBeforeEverythingElse)
   line.push(3, CommandKind::ReadParameter, { 0 });
   line.stop(2);
   EXPECT_THAT(line.exchanges(2), ElementsAre("S2", "S2"));
+}
+
+TEST(Scheduler, tellsVelocitiesFromServices)
+{
+  VirtualLine line(2);
+  line.push(1, CommandKind::Velocity, { 0 });
+  EXPECT_EQ(line.next().what, Pick::What::Velocity);
+  line.scheduler.erase(1);
+  for (const auto kind :
+       { CommandKind::Reset, CommandKind::ReadFaults, CommandKind::ReadParameter, CommandKind::WriteParameter })
+  {
+    line.push(2, kind, { 1 });
+    EXPECT_EQ(line.next().what, Pick::What::Service);
+    line.scheduler.erase(2);
+  }
+}
+
+TEST(Scheduler, whatIsSettledBeforeAStatusGoesInTheTurnOfTheRefresh)
+{
+  VirtualLine line(3);
+  line.reads_per_refresh = 2;
+  line.views[1].connect_due = true;
+  EXPECT_THAT(line.exchanges(6), ElementsAre("R0", "R0", "N1", "N1", "R2", "R2"));
+  EXPECT_EQ(line.scheduler.cycles(), 0U);
+  line.views[1].connect_due = false;
+  EXPECT_THAT(line.exchanges(4), ElementsAre("R0", "R0", "R1", "R1"));
+  EXPECT_EQ(line.scheduler.cycles(), 1U);
+}
+
+TEST(Scheduler, whatIsSettledBeforeAStatusHasTheDeadlineOfTheRefresh)
+{
+  VirtualLine line(3);
+  line.views[2].connect_due = true;
+  line.views[2].serve_by = at(0);
+  const Pick pick = line.next();
+  EXPECT_EQ(pick.what, Pick::What::Connect);
+  EXPECT_EQ(pick.inverter, 2U);
+  EXPECT_TRUE(pick.deadline);
 }
 
 TEST(Scheduler, sendsAStopThatArrivesDuringAnExchangeDirectlyAfterIt)
@@ -788,7 +830,7 @@ TEST(Scheduler, intervalNeverDelaysACommand)
   {
     ASSERT_EQ(line.next().what, Pick::What::Nothing);
     line.push(id, CommandKind::Velocity, { 0 });
-    EXPECT_EQ(line.next().what, Pick::What::Command);
+    EXPECT_TRUE(line.next().isCommand());
     line.finish(line.next());
     line.now += Ms(100);
   }

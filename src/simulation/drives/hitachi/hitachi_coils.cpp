@@ -77,7 +77,7 @@ bool HitachiDrive::statusCoil(int number) const
     case 0x0019:  // FA3
       return on && atArrivalFrequency() && std::abs(frequency - panelValue(code_.c042)) < 0.1;
     case 0x0020:  // THM
-      return thermal_ > 0.9;
+      return usage_.heat() > 0.9;
     case 0x0028:  // ZS
       return frequency <= panelValue(code_.c063);
     case 0x0033:  // NDc: network lost

@@ -5,10 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-
-#include "simulation/drives/motor_watch.h"
-#include "simulation/drives/panel_parameters.h"
 
 namespace inverter_bus
 {
@@ -27,19 +23,13 @@ constexpr std::uint32_t SOURCE_MODBUS = 3;
 constexpr std::uint32_t INPUT_FREE_RUN = 11;  // C001-C008 = 11: FRS (MEM)
 constexpr std::uint32_t ACTION_IGNORE = 2;    // C076
 constexpr std::size_t TRIP_BLOCKS = 6;
-constexpr double OVERLOAD_TIME = 60.0;  // [s] at 150 % of the thermal level until E05
 constexpr double COOLING_TIME = 300.0;  // [s]
 }  // namespace
 
 HitachiDrive::HitachiDrive(const HitachiModel& model, const DriveOptions& options)
-  : ModbusSlave(options.name, options.station, options.seed, options.start, model.limits)
+  : BrandDrive(options, model.name, model.limits, model.parameters)
   , model_(model)
-  , options_(options)
-  , memory_(model.parameters)
-  , motor_(MotorRating())
-  , busy_until_(options.start)
-  , run_time_(3600.0 * (300 + options.station))
-  , power_time_(3600.0 * (1200 + options.station))
+  , usage_(options.station, COOLING_TIME)
 {
   code_ = { known("F002"), known("F003"), known("A001"), known("A002"), known("A003"), known("A004"), known("A020"),
             known("A061"), known("A062"), known("b012"), known("b031"), known("b035"), known("b082"), known("b086"),
@@ -49,12 +39,13 @@ HitachiDrive::HitachiDrive(const HitachiModel& model, const DriveOptions& option
   {
     input_functions_.push_back(memory_.find("C00" + std::to_string(input)));
   }
-  commission();
+  panel_.setSources({ { code_.a001, code_.a002 }, SOURCE_PANEL, code_.a004 });
+  commissionLine();
   motor_.setRating({ options.rated_current, options.rated_voltage, panelValue(code_.a003) });
-  motor_.setLoad(options.load);
   trips_.resize(TRIP_BLOCKS);
   buildMonitors();
   setSerial(serialInEffect());
+  map_.latch(memory_);
   control();
 }
 
@@ -63,26 +54,13 @@ HitachiDrive::Index HitachiDrive::known(const char* code) const
   return memory_.find(code);
 }
 
-double HitachiDrive::panelValue(Index index) const
+void HitachiDrive::commissionLine()
 {
-  return simulation::panelValue(memory_, index);
-}
-
-void HitachiDrive::commission()
-{
-  const auto baud = model_.bauds.find(options_.line.baud_rate);
-  if (baud == model_.bauds.end())
-  {
-    throw std::invalid_argument(model_.name + " has no baud rate " + std::to_string(options_.line.baud_rate));
-  }
-  if (options_.station < 1 || options_.station > model_.last_station)
-  {
-    throw std::invalid_argument(model_.name + " has no station " + std::to_string(options_.station) + " (1-" +
-                                std::to_string(model_.last_station) + ")");
-  }
+  const std::uint32_t baud = baudCode(model_.bauds);
+  requireStation(1, model_.last_station);
   commission("A001", 3);
   commission("A002", 3);
-  commission("C071", baud->second);
+  commission("C071", baud);
   commission("C072", options_.station);
   commission("C074", static_cast<int>(options_.line.parity));
   commission("C075", options_.line.stop_bits);
@@ -91,48 +69,24 @@ void HitachiDrive::commission()
     commission("C073", 8);  // I578: Modbus is always 8 bits, the factory setting is 7
     commission("C079", 1);  // Modbus RTU
   }
-  for (const auto& parameter : options_.parameters)
-  {
-    commission(parameter.first, parameter.second);
-  }
-}
-
-void HitachiDrive::commission(const std::string& code, double value)
-{
-  commissionAtPanel(memory_, model_.name, code, value);
+  commissionOptions();
 }
 
 std::optional<LineSettings> HitachiDrive::serialInEffect() const
 {
-  const auto baud = std::find_if(model_.bauds.begin(), model_.bauds.end(),
-                                 [this](const auto& one) { return memory_.ram(code_.c071) == one.second; });
+  const std::optional<int> baud = baudOf(model_.bauds, memory_.ram(code_.c071));
   const Index data_bits = memory_.find("C073");
   const bool modbus =
       data_bits == ParameterMemory::NONE || (memory_.ram(data_bits) == 8 && memory_.ram(memory_.find("C079")) == 1);
-  if (baud == model_.bauds.end() || !modbus)
+  if (!baud || !modbus)
   {
     return std::nullopt;
   }
   LineSettings serial;
-  serial.baud_rate = baud->first;
+  serial.baud_rate = *baud;
   serial.parity = static_cast<Parity>(memory_.ram(code_.c074));
   serial.stop_bits = static_cast<int>(memory_.ram(code_.c075));
   return serial;
-}
-
-const Motor& HitachiDrive::motor() const
-{
-  return motor_;
-}
-
-bool HitachiDrive::tripped() const
-{
-  return tripped_;
-}
-
-double HitachiDrive::startUpTime() const
-{
-  return options_.start_up_time;
 }
 
 Duration HitachiDrive::replyDelay() const
@@ -182,60 +136,28 @@ Duration HitachiDrive::watchdogTimeout() const
   return off ? Duration::zero() : seconds(memory_.ram(code_.c077) / 100.0);
 }
 
-bool HitachiDrive::busy() const
-{
-  return clock() < busy_until_;
-}
-
-TimePoint HitachiDrive::nextChange(TimePoint limit) const
-{
-  TimePoint next = limit;
-  const std::optional<TimePoint> deadline = watchdog_.deadline(watchdogTimeout());
-  if (deadline)
-  {
-    next = std::min(next, *deadline);
-  }
-  return nextLook(motor_, clock(), next);
-}
-
 void HitachiDrive::move(double seconds)
 {
-  watchMotor(seconds);
-  motor_.advance(seconds);
-}
-
-void HitachiDrive::watchMotor(double seconds)
-{
-  power_time_ += powered() ? seconds : 0.0;
-  run_time_ += motor_.turning() ? seconds : 0.0;
-  energy_ += motor_.power() * seconds / 3600.0;
   const double level = options_.rated_current * memory_.ram(code_.b012) / 1000.0;
-  const double share = motor_.current() / level;
-  const double excess = share * share - 1.0;
-  thermal_ += excess > 0.0 ? seconds * excess / (1.25 * OVERLOAD_TIME) : seconds * excess / COOLING_TIME;
-  thermal_ = std::max(0.0, thermal_);
+  usage_.count(motor_, powered(), motor_.current() / level, seconds);
+  BrandDrive::move(seconds);
 }
 
-void HitachiDrive::change()
+void HitachiDrive::changeMore()
 {
-  const std::optional<TimePoint> deadline = watchdog_.deadline(watchdogTimeout());
-  if (deadline && *deadline <= clock())
-  {
-    watchdog_.expire();
-    onTimeout();
-  }
   if (trip_after_stop_ && !motor_.turning())
   {
     doTrip(E_COMMUNICATION);
   }
-  if (thermal_ >= 1.0 && !tripped_)
+  if (usage_.heat() >= 1.0 && !tripped_)
   {
     doTrip(E_OVERLOAD);
   }
-  if (motor_.current() > OVERCURRENT * options_.rated_current)
-  {
-    doTrip(motor_.accelerating() ? 3 : (motor_.decelerating() ? 2 : 1));  // E03, E02, E01
-  }
+}
+
+int HitachiDrive::overcurrentTrip() const
+{
+  return motor_.accelerating() ? 3 : (motor_.decelerating() ? 2 : 1);  // E03, E02, E01
 }
 
 void HitachiDrive::onTimeout()
@@ -269,9 +191,9 @@ void HitachiDrive::setHold(Hold hold)
 
 bool HitachiDrive::runCommanded() const
 {
-  if (panel_)
+  if (panel_.inCommand())
   {
-    return *panel_ != 0.0;
+    return panel_.hertz() != 0.0;
   }
   const std::uint32_t limit = memory_.ram(code_.b035);  // 0 both directions, 1 forward only, 2 reverse only
   const bool direction_allowed = limit == 0 || (limit == 2) == coils_[COIL_REVERSE];
@@ -294,9 +216,9 @@ double HitachiDrive::limited(double hertz) const
 
 double HitachiDrive::wantedFrequency() const
 {
-  if (panel_)
+  if (panel_.inCommand())
   {
-    return *panel_ < 0.0 ? -limited(-*panel_) : limited(*panel_);
+    return panel_.hertz() < 0.0 ? -limited(-panel_.hertz()) : limited(panel_.hertz());
   }
   double hertz = 0.0;
   if (memory_.ram(code_.a001) == SOURCE_MODBUS)
@@ -366,12 +288,11 @@ void HitachiDrive::doTrip(int code)
   record.frequency = std::abs(motor_.frequency());
   record.current = motor_.current();
   record.dc_voltage = motor_.dcVoltage();
-  record.run_time = run_time_;
-  record.power_time = power_time_;
+  record.run_time = usage_.runTime();
+  record.power_time = usage_.powerTime();
   trips_.push_front(record);
   trips_.pop_back();
-  ++trip_count_;
-  tripped_ = true;
+  recordTrip(code);
   trip_state_ = TRIP_STATE;
   trip_after_stop_ = false;
   control();
@@ -384,7 +305,7 @@ void HitachiDrive::resetTrip()
     return;
   }
   tripped_ = false;
-  thermal_ = 0.0;
+  usage_.coolDown();
   watchdog_.reset();
   goDeaf(clock() + seconds(options_.reset_silence));
   control();  // a RUN that is still on restarts the motor here
@@ -395,24 +316,17 @@ void HitachiDrive::losePower()
   coils_.fill(false);
   reference_ = 0;
   pid_feedback_ = 0;
-  tripped_ = false;
   trip_after_stop_ = false;
   hold_ = Hold::None;
   store_next_write_ = false;
-  busy_until_ = clock();
-  watchdog_.reset();
-  memory_.reload();
-  if (panel_)
-  {
-    panel_ = 0.0;
-  }
-  motor_.cut();
+  BrandDrive::losePower();
 }
 
 void HitachiDrive::gainPower()
 {
   setStation(static_cast<int>(memory_.ram(code_.c072)));
   setSerial(serialInEffect());
+  map_.latch(memory_);
   if (safe_stop_)
   {
     doTrip(37);
@@ -420,19 +334,9 @@ void HitachiDrive::gainPower()
   control();
 }
 
-Refusal HitachiDrive::trip(int code, TimePoint now)
+Refusal HitachiDrive::noSuchTrip(int code) const
 {
-  advance(now);
-  if (!powered())
-  {
-    return "the drive has no power";
-  }
-  if (code < 1 || code > 99)
-  {
-    return "trip code out of range (1-99)";
-  }
-  doTrip(code);
-  return std::nullopt;
+  return code < 1 || code > 99 ? Refusal("trip code out of range (1-99)") : std::nullopt;
 }
 
 Refusal HitachiDrive::showTripAs(unsigned state)

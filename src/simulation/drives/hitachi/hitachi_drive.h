@@ -15,11 +15,10 @@
 #include <vector>
 
 #include "inverter_bus/simulation/drive_options.h"
-#include "simulation/drives/comm_watchdog.h"
+#include "simulation/drives/brand_drive.h"
 #include "simulation/drives/hitachi/hitachi_model.h"
-#include "simulation/drives/motor.h"
-#include "simulation/drives/parameter_memory.h"
-#include "simulation/modbus/modbus_slave.h"
+#include "simulation/drives/hitachi/register_map.h"
+#include "simulation/drives/motor_usage.h"
 
 namespace inverter_bus
 {
@@ -32,36 +31,30 @@ namespace simulation
 /// Where the manuals are silent: A001, A002 and C076-C078 take effect at once, C071-C075 and C072 after a power cycle;
 /// only requests to this station and broadcasts feed the watchdog; reset and external trip act on the coil's rising
 /// edge.
-class HitachiDrive : public ModbusSlave
+class HitachiDrive final : public BrandDrive<ModbusSlave>
 {
 public:
-  /// @throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate or station that
+  /// \throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate or station that
   /// the drive doesn't have; the text names it
   HitachiDrive(const HitachiModel& model, const DriveOptions& options);
 
-  Refusal trip(int code, TimePoint now) override;
   Refusal showTripAs(unsigned state) override;
-  Refusal takeOverAtPanel(double hertz, TimePoint now) override;
-  Refusal releasePanel(TimePoint now) override;
-  Refusal pressStopKey(TimePoint now) override;
   Refusal setSafeStop(bool active, TimePoint now) override;
-  Refusal setParameter(const std::string& code, double value, TimePoint now) override;
-  Refusal parameter(const std::string& code, KeyValues& values) const override;
-
-  const Motor& motor() const override;
   bool runCommand() const override;
-  bool tripped() const;
 
 protected:
-  TimePoint nextChange(TimePoint limit) const override;
   void move(double seconds) override;
-  void change() override;
   void losePower() override;
   void gainPower() override;
-  double startUpTime() const override;
-  void takeLoad(double load) override;
-  void takeBusy(TimePoint until) override;
-  void describeMotor(KeyValues& values) const override;
+  void control() override;
+  void doTrip(int code) override;
+  Refusal noSuchTrip(int code) const override;
+  int overcurrentTrip() const override;
+  Refusal stopByKey() override;
+  Duration watchdogTimeout() const override;
+  void onTimeout() override;
+  void changeMore() override;
+  void describeBrand(ShowList& list) const override;
 
   bool isGroup(std::uint8_t station) const override;
   Duration replyDelay() const override;
@@ -73,8 +66,6 @@ protected:
                                  std::uint8_t function) override;
 
 private:
-  using Index = ParameterMemory::Index;
-
   /// One block of the trip history (d081-d086).
   struct TripRecord
   {
@@ -115,25 +106,17 @@ private:
   };
 
   // hitachi_drive.cpp: commissioning and control
-  void commission();
-  void commission(const std::string& code, double value);
+  void commissionLine();
   Index known(const char* code) const;
-  double panelValue(Index index) const;
   std::optional<LineSettings> serialInEffect() const;
-  void control();
   bool runCommanded() const;
   double wantedFrequency() const;
   double limited(double hertz) const;
   double maximumFrequency() const;
   bool freeRunInput() const;
-  void doTrip(int code);
   void resetTrip();
   void setHold(Hold hold);
-  void onTimeout();
-  void watchMotor(double seconds);
   int runState() const;
-  Duration watchdogTimeout() const;
-  bool busy() const;
 
   // hitachi_coils.cpp
   bool coil(int number) const;
@@ -143,6 +126,14 @@ private:
   std::uint16_t coilWord(int first) const;
   bool atSetFrequency() const;
   bool atArrivalFrequency() const;
+
+  // hitachi_mapping.cpp
+  int wordsAt(std::uint16_t number) const;
+  std::uint16_t otherHalf(std::uint16_t number) const;
+  bool mapsAny(std::uint32_t first, std::uint32_t count) const;
+  ModbusException resolve(std::uint16_t number, std::uint16_t& internal, const RegisterMap::Slot*& slot) const;
+  ModbusException readMapped(std::uint16_t number, std::uint16_t& value) const;
+  ModbusException stageMapped(std::uint16_t number, std::uint16_t value, Change& change) const;
 
   // hitachi_registers.cpp
   void buildMonitors();
@@ -156,33 +147,22 @@ private:
   void apply(const Change& change, bool to_eeprom);
 
   const HitachiModel& model_;
-  DriveOptions options_;
-  ParameterMemory memory_;
-  Motor motor_;
-  CommWatchdog watchdog_;
   std::unordered_map<std::uint16_t, std::pair<std::uint16_t, Monitor>>
       monitors_;  // by register; first = start register
 
   std::array<bool, 16> coils_{};  // by printed number, 0001h-000Eh
   std::uint32_t reference_ = 0;   // F001 [0.01 Hz]
   std::uint16_t pid_feedback_ = 0;
-  std::optional<double> panel_;  // [Hz] the panel is in command
-  std::optional<std::pair<std::uint32_t, std::uint32_t>> sources_before_panel_;
   Hold hold_ = Hold::None;
   bool trip_after_stop_ = false;
   bool safe_stop_ = false;
-  bool tripped_ = false;
   static constexpr unsigned TRIP_STATE = 2;
   unsigned trip_state_ = TRIP_STATE;  ///< status B while it is tripped
   std::deque<TripRecord> trips_;      // newest first
-  std::uint32_t trip_count_ = 0;
-  bool store_next_write_ = false;  // register 0902h
+  bool store_next_write_ = false;     // register 0902h
   bool store_this_write_ = false;
-  TimePoint busy_until_;
-  double thermal_ = 0.0;     // electronic thermal, trips at 1
-  double run_time_ = 0.0;    // [s]
-  double power_time_ = 0.0;  // [s]
-  double energy_ = 0.0;      // [kWh]
+  MotorUsage usage_;
+  RegisterMap map_;
 
   struct Codes
   {

@@ -6,14 +6,11 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "inverter_bus/simulation/drive_options.h"
-#include "simulation/compoway/compoway_slave.h"
-#include "simulation/drives/motor.h"
-#include "simulation/drives/parameter_memory.h"
+#include "simulation/drives/brand_drive.h"
 
 namespace inverter_bus
 {
@@ -33,6 +30,7 @@ namespace simulation
 ///   overheated, 7 fin overheated, 8 fan, 9 braking IGBT, 12 charged, 13 running, 14 reverse, 15 tripped; `NAME trip N`
 ///   with N = 1 ... 7 sets the fault bits in this order, others bit 15 alone;
 /// - C0/0000 shows the reference too; C1 ends after 0000; C3 after 000B;
+/// - taking over at the panel: C3/0009 becomes 1 and the terminals run the motor, the only way that the manual shows;
 /// - ramps, which only the panel sets: `acceleration` and `deceleration` [s].
 ///
 /// Where the manual is silent: the reference is limited by C3/0005-0007 when it is used, not when it is written; the
@@ -40,34 +38,24 @@ namespace simulation
 /// setup area 1 ends RUN for good and lets no RUN in (2203), nor does C3/0009 = 1; the write mode can't be changed
 /// there (2203); a trip keeps RUN; `busy` refuses writes (2203) and nothing else; a write to the EEPROM takes no time;
 /// C3/0008 = 2 lets the motor run on after any power cut; nothing happens when the communication ends.
-class JeDrive : public CompowaySlave
+class JeDrive final : public BrandDrive<CompowaySlave>
 {
 public:
-  /// @throws std::invalid_argument for an unknown parameter, a value out of its range, a baud rate or station that the
+  /// \throws std::invalid_argument for an unknown parameter, a value out of its range, a baud rate or station that the
   /// drive doesn't have, or operation codes that can't be; the text names it
   explicit JeDrive(const DriveOptions& options);
 
-  Refusal trip(int code, TimePoint now) override;
-  /// As if C3/0009 were 1 and the terminals ran the motor: the only way that the manual shows.
-  Refusal takeOverAtPanel(double hertz, TimePoint now) override;
-  Refusal releasePanel(TimePoint now) override;
-  Refusal pressStopKey(TimePoint now) override;
-  Refusal setSafeStop(bool active, TimePoint now) override;
-  Refusal setParameter(const std::string& code, double value, TimePoint now) override;
-  Refusal parameter(const std::string& code, KeyValues& values) const override;
-  const Motor& motor() const override;
   bool runCommand() const override;
 
 protected:
-  TimePoint nextChange(TimePoint limit) const override;
-  void move(double seconds) override;
-  void change() override;
   void losePower() override;
   void gainPower() override;
-  double startUpTime() const override;
-  void takeLoad(double load) override;
-  void takeBusy(TimePoint until) override;
-  void describeMotor(KeyValues& values) const override;
+  void control() override;
+  void doTrip(int code) override;
+  int overcurrentTrip() const override;
+  double ratedCurrent() const override;
+  Refusal stopByKey() override;
+  void describeBrand(ShowList& list) const override;
 
   Duration replyDelay() const override;
   bool hasArea(std::uint8_t type) const override;
@@ -81,8 +69,6 @@ protected:
   std::string controllerStatus() const override;
 
 private:
-  using Index = ParameterMemory::Index;
-
   enum class Run
   {
     Off,
@@ -91,12 +77,11 @@ private:
   };
 
   // je_drive.cpp: commissioning, control, by hand
-  void commission();
+  void commissionLine();
   LineSettings serialInEffect() const;
   bool busCommands() const;
   bool busRuns() const;
   double wantedFrequency() const;
-  void control();
   void setRun(Run run);
 
   // je_services.cpp
@@ -108,22 +93,13 @@ private:
   Response changeArea(int area);
   Response resetTrip();
 
-  DriveOptions options_;
-  ParameterMemory memory_;
-  Motor motor_;
   std::map<std::string, std::string> operations_;  // name by code
   Run run_ = Run::Off;
   Run run_before_power_cut_ = Run::Off;
   TimePoint power_cut_;
   bool ram_mode_ = false;
   int area_ = 0;
-  std::optional<double> panel_;  // [Hz] the terminals are in command
-  std::uint32_t source_before_panel_ = 0;
   bool stop_key_ = false;  // stays stopped until RUN was off
-  bool tripped_ = false;
-  int trip_ = 0;  // the last one
-  std::uint64_t trips_ = 0;
-  TimePoint busy_until_;
 
   struct Codes
   {

@@ -91,9 +91,9 @@ std::uint32_t JeDrive::status() const
   word |= frequency != 0.0 ? 1U << 13U : 0U;
   word |= frequency < 0.0 ? 1U << 14U : 0U;
   word |= tripped_ ? 1U << 15U : 0U;
-  if (tripped_ && trip_ >= 1 && trip_ <= 7)
+  if (tripped_ && last_trip_ >= 1 && last_trip_ <= 7)
   {
-    word |= 1U << static_cast<unsigned int>(FAULT_BITS[trip_ - 1]);
+    word |= 1U << static_cast<unsigned int>(FAULT_BITS[last_trip_ - 1]);
   }
   return word;
 }
@@ -145,7 +145,7 @@ bool JeDrive::accepts(std::uint8_t type, std::uint32_t address, const std::vecto
 CompowayResponse JeDrive::writeVariables(std::uint8_t type, std::uint32_t address,
                                          const std::vector<std::uint32_t>& values)
 {
-  if (clock() < busy_until_ || (type == INITIAL_SETTINGS && area_ == 0))
+  if (busy() || (type == INITIAL_SETTINGS && area_ == 0))
   {
     return Response::OperationError;
   }

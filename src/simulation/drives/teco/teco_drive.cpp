@@ -4,11 +4,9 @@
 #include "simulation/drives/teco/teco_drive.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "simulation/drives/motor_watch.h"
-#include "simulation/drives/panel_parameters.h"
 #include "simulation/drives/teco/teco_parameters.h"
 #include "simulation/modbus/modbus_frame.h"
 
@@ -18,7 +16,6 @@ namespace simulation
 {
 namespace
 {
-const char* const MODEL = "teco_7200ma";
 constexpr std::uint16_t RUN_BIT = 0x0001;
 constexpr std::uint16_t REVERSE_BIT = 0x0002;
 constexpr std::uint16_t EXTERNAL_FAULT_BIT = 0x0004;
@@ -52,71 +49,49 @@ ModbusLimits limits()
 }  // namespace
 
 TecoDrive::TecoDrive(const DriveOptions& options)
-  : ModbusSlave(options.name, options.station, options.seed, options.start, limits())
-  , options_(options)
-  , memory_(tecoParameters())
-  , motor_(MotorRating())
-  , powered_since_(options.start)
-  , busy_until_(options.start)
+  : BrandDrive(options, "teco_7200ma", limits(), tecoParameters()), powered_since_(options.start)
 {
   code_ = { memory_.find("Bn-01"), memory_.find("Bn-02"), memory_.find("Bn-04"), memory_.find("Cn-02"),
             memory_.find("Cn-27"), memory_.find("Sn-04"), memory_.find("Sn-05"), memory_.find("Sn-36"),
             memory_.find("Sn-37"), memory_.find("Sn-38"), memory_.find("Sn-39") };
-  commission();
-  motor_.setRating({ options.rated_current, options.rated_voltage, panelValue(memory_, code_.cn02) });
-  motor_.setLoad(options.load);
+  panel_.setSources({ { code_.sn04, code_.sn05 }, FROM_PANEL, code_.cn02 });
+  commissionLine();
+  motor_.setRating({ options.rated_current, options.rated_voltage, panelValue(code_.cn02) });
   setSerial(serialInEffect(), true);
   control();
 }
 
-void TecoDrive::commission()
+void TecoDrive::commissionLine()
 {
-  const auto baud = bauds().find(options_.line.baud_rate);
-  if (baud == bauds().end())
-  {
-    throw std::invalid_argument(std::string(MODEL) + " has no baud rate " + std::to_string(options_.line.baud_rate) +
-                                " (1200-9600)");
-  }
-  if (options_.station < 1 || options_.station > LAST_STATION)
-  {
-    throw std::invalid_argument(std::string(MODEL) + " has no station " + std::to_string(options_.station) + " (1-31)");
-  }
+  const std::uint32_t baud = baudCode(bauds());
+  requireStation(1, LAST_STATION);
   // The block must leave 0000H, 0001H and the parameters alone.
   if (options_.monitor_base < 0x0002 || options_.monitor_base + 0x10 > TECO_PARAMETERS)
   {
-    throw std::invalid_argument(std::string(MODEL) + ": monitor_base " + std::to_string(options_.monitor_base) +
+    throw std::invalid_argument(model_name_ + ": monitor_base " + std::to_string(options_.monitor_base) +
                                 " (allowed: 2 to 752)");
   }
-  commissionAtPanel(memory_, MODEL, "Sn-04", FROM_BUS);
-  commissionAtPanel(memory_, MODEL, "Sn-05", FROM_BUS);
-  commissionAtPanel(memory_, MODEL, "Sn-36", options_.station);
-  commissionAtPanel(memory_, MODEL, "Sn-37", baud->second);
-  commissionAtPanel(memory_, MODEL, "Sn-38", static_cast<int>(options_.line.parity));
-  for (const auto& parameter : options_.parameters)
-  {
-    commissionAtPanel(memory_, MODEL, parameter.first, parameter.second);
-  }
+  commission("Sn-04", FROM_BUS);
+  commission("Sn-05", FROM_BUS);
+  commission("Sn-36", options_.station);
+  commission("Sn-37", baud);
+  commission("Sn-38", static_cast<int>(options_.line.parity));
+  commissionOptions();
 }
 
 std::optional<LineSettings> TecoDrive::serialInEffect() const
 {
-  const auto baud = std::find_if(bauds().begin(), bauds().end(),
-                                 [this](const auto& one) { return memory_.ram(code_.sn37) == one.second; });
-  if (baud == bauds().end())
+  const std::optional<int> baud = baudOf(bauds(), memory_.ram(code_.sn37));
+  if (!baud)
   {
     return std::nullopt;
   }
   LineSettings serial;
-  serial.baud_rate = baud->first;
+  serial.baud_rate = *baud;
   serial.parity = static_cast<Parity>(memory_.ram(code_.sn38));
   // A character always has 11 bits: 8N2, 8E1 or 8O1 (p. 5).
   serial.stop_bits = serial.parity == Parity::None ? 2 : 1;
   return serial;
-}
-
-double TecoDrive::startUpTime() const
-{
-  return options_.start_up_time;
 }
 
 Duration TecoDrive::replyDelay() const
@@ -140,9 +115,9 @@ void TecoDrive::heard(std::uint8_t /*function*/)
   }
 }
 
-Duration TecoDrive::timeout() const
+Duration TecoDrive::watchdogTimeout() const
 {
-  return powered() ? seconds(panelValue(memory_, code_.cn27)) : Duration::zero();
+  return powered() ? seconds(panelValue(code_.cn27)) : Duration::zero();
 }
 
 std::optional<TimePoint> TecoDrive::powerOnDeadline() const
@@ -180,36 +155,22 @@ void TecoDrive::onTimeout()
 
 TimePoint TecoDrive::nextChange(TimePoint limit) const
 {
-  TimePoint next = limit;
-  for (const std::optional<TimePoint>& due : { watchdog_.deadline(timeout()), powerOnDeadline() })
-  {
-    next = due ? std::min(next, *due) : next;
-  }
-  return nextLook(motor_, clock(), next);
+  const std::optional<TimePoint> due = powerOnDeadline();
+  return BrandDrive::nextChange(due ? std::min(limit, *due) : limit);
 }
 
-void TecoDrive::move(double seconds)
+void TecoDrive::changeMore()
 {
-  motor_.advance(seconds);
-}
-
-void TecoDrive::change()
-{
-  const std::optional<TimePoint> lost = watchdog_.deadline(timeout());
-  if (lost && *lost <= clock())
-  {
-    watchdog_.expire();
-    onTimeout();
-  }
   const std::optional<TimePoint> never_heard = powerOnDeadline();
   if (never_heard && *never_heard <= clock())
   {
     raiseAlarm();
   }
-  if (motor_.current() > OVERCURRENT * options_.rated_current)
-  {
-    doTrip(TRIP_OVERCURRENT);
-  }
+}
+
+int TecoDrive::overcurrentTrip() const
+{
+  return TRIP_OVERCURRENT;
 }
 
 bool TecoDrive::runBit(std::uint16_t command) const
@@ -232,9 +193,9 @@ bool TecoDrive::busSetsFrequency() const
 
 double TecoDrive::wantedFrequency() const
 {
-  if (panel_)
+  if (panel_.inCommand())
   {
-    return *panel_;
+    return panel_.hertz();
   }
   const double hertz = busRuns() && busSetsFrequency() ? reference_ / 100.0 : 0.0;
   return (command_ & REVERSE_BIT) != 0 ? -hertz : hertz;
@@ -242,8 +203,8 @@ double TecoDrive::wantedFrequency() const
 
 void TecoDrive::control()
 {
-  const double stop_time = panelValue(memory_, hold_ == Hold::TimeoutFastRamp ? code_.bn04 : code_.bn02);
-  motor_.setRamps({ panelValue(memory_, code_.cn02), panelValue(memory_, code_.bn01), stop_time, 0.5 });
+  const double stop_time = panelValue(hold_ == Hold::TimeoutFastRamp ? code_.bn04 : code_.bn02);
+  motor_.setRamps({ panelValue(code_.cn02), panelValue(code_.bn01), stop_time, 0.5 });
   if (!powered() || tripped_ || hold_ == Hold::TimeoutCoast)
   {
     motor_.cut();
@@ -280,9 +241,7 @@ void TecoDrive::setHold(Hold hold)
 
 void TecoDrive::doTrip(int code)
 {
-  tripped_ = true;
-  trip_ = code;
-  ++trips_;
+  recordTrip(code);
   control();
 }
 
@@ -297,17 +256,9 @@ void TecoDrive::losePower()
   command_ = 0;
   reference_ = 0;
   setting_error_ = false;
-  tripped_ = false;
   hold_ = Hold::None;
   alarm_ = Alarm::Off;
-  busy_until_ = clock();
-  watchdog_.reset();
-  memory_.reload();
-  if (panel_)
-  {
-    panel_ = 0.0;
-  }
-  motor_.cut();
+  BrandDrive::losePower();
 }
 
 void TecoDrive::gainPower()
@@ -318,94 +269,10 @@ void TecoDrive::gainPower()
   control();
 }
 
-Refusal TecoDrive::trip(int code, TimePoint now)
+Refusal TecoDrive::stopByKey()
 {
-  advance(now);
-  if (!powered())
-  {
-    return "the drive has no power";
-  }
-  doTrip(code);
-  return std::nullopt;
-}
-
-Refusal TecoDrive::takeOverAtPanel(double hertz, TimePoint now)
-{
-  advance(now);
-  if (std::abs(hertz) > panelValue(memory_, code_.cn02))
-  {
-    return "above the maximum frequency Cn-02 = " + twoDecimals(panelValue(memory_, code_.cn02)) + " Hz";
-  }
-  if (!panel_)
-  {
-    sources_before_panel_ = { memory_.ram(code_.sn04), memory_.ram(code_.sn05) };
-  }
-  memory_.commission(code_.sn04, FROM_PANEL);
-  memory_.commission(code_.sn05, FROM_PANEL);
-  panel_ = hertz;
-  control();
-  return std::nullopt;
-}
-
-Refusal TecoDrive::releasePanel(TimePoint now)
-{
-  advance(now);
-  if (!panel_)
-  {
-    return "the panel has not taken over";
-  }
-  memory_.commission(code_.sn04, sources_before_panel_.first);
-  memory_.commission(code_.sn05, sources_before_panel_.second);
-  panel_.reset();
-  control();
-  return std::nullopt;
-}
-
-Refusal TecoDrive::pressStopKey(TimePoint now)
-{
-  advance(now);
-  if (panel_)
-  {
-    panel_ = 0.0;
-    control();
-    return std::nullopt;
-  }
   setHold(Hold::StopKey);
   return std::nullopt;
-}
-
-Refusal TecoDrive::setSafeStop(bool /*active*/, TimePoint /*now*/)
-{
-  return std::string(MODEL) + " has no safe torque off";
-}
-
-void TecoDrive::takeLoad(double load)
-{
-  motor_.setLoad(load);
-  change();
-}
-
-void TecoDrive::takeBusy(TimePoint until)
-{
-  busy_until_ = until;
-}
-
-Refusal TecoDrive::setParameter(const std::string& code, double value, TimePoint now)
-{
-  advance(now);
-  Refusal refusal = setAtPanel(memory_, MODEL, code, value);
-  control();
-  return refusal;
-}
-
-Refusal TecoDrive::parameter(const std::string& code, KeyValues& values) const
-{
-  return showAtPanel(memory_, MODEL, code, values);
-}
-
-const Motor& TecoDrive::motor() const
-{
-  return motor_;
 }
 
 bool TecoDrive::runCommand() const
@@ -413,29 +280,17 @@ bool TecoDrive::runCommand() const
   return runBit(command_);
 }
 
-void TecoDrive::describeMotor(KeyValues& values) const
+void TecoDrive::describeBrand(ShowList& list) const
 {
-  const auto add = [&values](const char* key, const std::string& value) { values.emplace_back(key, value); };
-  const auto flag = [&add](const char* key, bool value) { add(key, value ? "1" : "0"); };
-  add("model", MODEL);
-  appendMotor(motor_, values);
-  add("command", std::to_string(command_));
-  flag("run_command", runCommand());
-  flag("run_effective", busRuns() && !tripped_);
-  add("reference", twoDecimals(reference_ / 100.0));
-  flag("tripped", tripped_);
-  add("trip", std::to_string(tripped_ ? trip_ : 0));
-  add("last_trip", std::to_string(trip_));
-  add("trips", std::to_string(trips_));
-  add("alarm", alarm_ == Alarm::Off ? "off" : (alarm_ == Alarm::Lit ? "lit" : "flashing"));
-  add("alarms", std::to_string(alarms_));
-  add("command_source", std::to_string(memory_.ram(code_.sn04)));
-  flag("panel", panel_.has_value());
-  flag("held", hold_ != Hold::None);
-  flag("busy", clock() < busy_until_);
-  const bool off = timeout() == Duration::zero();
-  add("watchdog", off ? "off" : (watchdog_.expired() ? "expired" : (watchdog_.started() ? "running" : "waiting")));
-  add("eeprom_writes", std::to_string(memory_.eepromWrites()));
+  list.number("command", command_);
+  list.flag("run_command", runCommand());
+  list.flag("run_effective", busRuns() && !tripped_);
+  list.text("reference", twoDecimals(reference_ / 100.0));
+  list.text("alarm", alarm_ == Alarm::Off ? "off" : (alarm_ == Alarm::Lit ? "lit" : "flashing"));
+  list.number("alarms", alarms_);
+  list.number("command_source", memory_.ram(code_.sn04));
+  list.flag("panel", panel_.inCommand());
+  list.flag("held", hold_ != Hold::None);
 }
 }  // namespace simulation
 }  // namespace inverter_bus

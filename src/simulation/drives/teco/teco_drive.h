@@ -5,18 +5,11 @@
 #define INVERTER_BUS_SIMULATION_TECO_DRIVE_H
 
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "inverter_bus/simulation/drive_options.h"
-#include "simulation/drives/comm_watchdog.h"
-#include "simulation/drives/motor.h"
-#include "simulation/drives/parameter_memory.h"
-#include "simulation/modbus/modbus_slave.h"
+#include "simulation/drives/brand_drive.h"
 
 namespace inverter_bus
 {
@@ -43,46 +36,36 @@ namespace simulation
 /// and ends the alarm, nothing else does; after a stop by it the motor stays stopped until RUN was off
 /// (DriveOptions::restart_after_timeout: until the next request); Sn-36, 37, 38 count after a power cycle; 0000H and
 /// 0001H are 0 after power-on; Sn-04 = 2 and Sn-05 = 2 mean RS-485.
-class TecoDrive : public ModbusSlave
+class TecoDrive final : public BrandDrive<ModbusSlave>
 {
 public:
-  /// @throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate, station or
+  /// \throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate, station or
   /// monitor base that can't be; the text names it
   explicit TecoDrive(const DriveOptions& options);
 
-  Refusal trip(int code, TimePoint now) override;
-  Refusal takeOverAtPanel(double hertz, TimePoint now) override;
-  Refusal releasePanel(TimePoint now) override;
-  Refusal pressStopKey(TimePoint now) override;
-  Refusal setSafeStop(bool active, TimePoint now) override;
-  Refusal setParameter(const std::string& code, double value, TimePoint now) override;
-  Refusal parameter(const std::string& code, KeyValues& values) const override;
-  const Motor& motor() const override;
   bool runCommand() const override;
 
 protected:
   TimePoint nextChange(TimePoint limit) const override;
-  void move(double seconds) override;
-  void change() override;
   void losePower() override;
   void gainPower() override;
-  double startUpTime() const override;
-  void takeLoad(double load) override;
-  void takeBusy(TimePoint until) override;
-  void describeMotor(KeyValues& values) const override;
+  void control() override;
+  void doTrip(int code) override;
+  int overcurrentTrip() const override;
+  Refusal stopByKey() override;
+  Duration watchdogTimeout() const override;
+  void onTimeout() override;
+  void changeMore() override;
+  void describeBrand(ShowList& list) const override;
 
   bool takesBroadcast(const Bytes& frame) const override;
   Duration replyDelay() const override;
   void heard(std::uint8_t function) override;
-  ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values) override;
-  ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values) override;
   ModbusException readRegisters(std::uint16_t wire, std::uint16_t count, std::vector<std::uint16_t>& values) override;
   ModbusException writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
                                  std::uint8_t function) override;
 
 private:
-  using Index = ParameterMemory::Index;
-
   /// Why the motor stays stopped although the bus says RUN; ends when RUN goes off.
   enum class Hold
   {
@@ -101,21 +84,17 @@ private:
   };
 
   // teco_drive.cpp: commissioning, control, supervision
-  void commission();
+  void commissionLine();
   std::optional<LineSettings> serialInEffect() const;
   bool runBit(std::uint16_t command) const;
   bool busRuns() const;
   bool busSetsFrequency() const;
   double wantedFrequency() const;
-  void control();
   void setCommand(std::uint16_t command);
-  void doTrip(int code);
   void resetTrip();
   void setHold(Hold hold);
-  Duration timeout() const;
   std::optional<TimePoint> powerOnDeadline() const;
   void raiseAlarm();
-  void onTimeout();
 
   // teco_registers.cpp
   bool isMonitor(std::uint32_t wire) const;
@@ -124,23 +103,13 @@ private:
   std::optional<std::uint16_t> readRegister(std::uint32_t wire) const;
   ModbusException checkWrite(std::uint32_t wire, std::uint16_t value) const;
 
-  DriveOptions options_;
-  ParameterMemory memory_;
-  Motor motor_;
-  CommWatchdog watchdog_;
   TimePoint powered_since_;
   Alarm alarm_ = Alarm::Off;
   std::uint64_t alarms_ = 0;
   std::uint16_t command_ = 0;    // 0000H
   std::uint16_t reference_ = 0;  // 0001H [0.01 Hz]
   bool setting_error_ = false;   // the last write was out of its limits
-  std::optional<double> panel_;  // [Hz] the panel is in command
-  std::pair<std::uint32_t, std::uint32_t> sources_before_panel_{};
   Hold hold_ = Hold::None;
-  bool tripped_ = false;
-  int trip_ = 0;  // the last one
-  std::uint64_t trips_ = 0;
-  TimePoint busy_until_;
 
   struct Codes
   {

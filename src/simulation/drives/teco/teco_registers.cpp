@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "simulation/drives/panel_parameters.h"
 #include "simulation/drives/teco/teco_drive.h"
 
 namespace inverter_bus
@@ -24,16 +23,6 @@ std::uint16_t rounded(double value)
   return static_cast<std::uint16_t>(std::lround(value));
 }
 }  // namespace
-
-ModbusException TecoDrive::readCoils(std::uint16_t /*wire*/, std::uint16_t /*count*/, std::vector<bool>& /*values*/)
-{
-  return ModbusException::FunctionNotSupported;
-}
-
-ModbusException TecoDrive::writeCoils(std::uint16_t /*wire*/, const std::vector<bool>& /*values*/)
-{
-  return ModbusException::FunctionNotSupported;
-}
 
 bool TecoDrive::isMonitor(std::uint32_t wire) const
 {
@@ -60,7 +49,7 @@ std::uint16_t TecoDrive::monitor(std::uint32_t offset) const
     case 0:
       return status();
     case 1:
-      return static_cast<std::uint16_t>(tripped_ ? trip_ : 0);
+      return static_cast<std::uint16_t>(tripped_ ? last_trip_ : 0);
     case 3:
       return reference_;
     case 4:
@@ -121,7 +110,7 @@ ModbusException TecoDrive::checkWrite(std::uint32_t wire, std::uint16_t value) c
   }
   if (wire == FREQUENCY)
   {
-    const bool fits = value <= panelValue(memory_, code_.cn02) * 100.0 + 0.5;
+    const bool fits = value <= panelValue(code_.cn02) * 100.0 + 0.5;
     return fits ? ModbusException::None : ModbusException::ValueOutOfRange;
   }
   if (isMonitor(wire))
@@ -134,7 +123,7 @@ ModbusException TecoDrive::checkWrite(std::uint32_t wire, std::uint16_t value) c
     return ModbusException::ValueOutOfRange;
   }
   const bool locked = motor_.turning() && !memory_.info(index).while_running;
-  return locked || clock() < busy_until_ ? ModbusException::NotAllowedNow : ModbusException::None;
+  return locked || busy() ? ModbusException::NotAllowedNow : ModbusException::None;
 }
 
 ModbusException TecoDrive::writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,

@@ -197,7 +197,7 @@ void ToshibaVfs15::control()
   }
 }
 
-double ToshibaVfs15::current() const
+double ToshibaVfs15::outputCurrent() const
 {
   return dcBraking() ? raw(F251) / 100.0 * raw(FE70) / 10.0 : motor_.current();
 }

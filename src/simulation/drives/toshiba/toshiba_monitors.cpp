@@ -78,7 +78,7 @@ void ToshibaVfs15::buildMeasurements()
   const auto frequency = [this] { return std::abs(motor_.frequency()) * 100.0; };
   const auto rated_current = [this] { return raw(FE70) / 10.0; };
   const auto rated_voltage = [this] { return raw(FE71) / 10.0; };
-  const auto load = [this, rated_current] { return current() / rated_current() * 100.0; };
+  const auto load = [this, rated_current] { return outputCurrent() / rated_current() * 100.0; };
   const auto zero = [] { return 0.0; };
   addHeld(0xFD00, frequency);
   addHeld(0xFD02, [this] { return wantedFrequency() * 100.0; });
@@ -90,8 +90,8 @@ void ToshibaVfs15::buildMeasurements()
   addHeld(0xFD18, [this] { return motor_.torque() * 100.0; });
   addHeld(0xFD20, [this] { return motor_.torque() * 100.0; });
   addHeld(0xFD22, zero);  // PID feedback
-  addHeld(0xFD23, [this] { return thermal_ * 10000.0; });
-  addHeld(0xFD24, [this] { return thermal_ * 10000.0; });
+  addHeld(0xFD23, [this] { return usage_.heat() * 10000.0; });
+  addHeld(0xFD24, [this] { return usage_.heat() * 10000.0; });
   addHeld(0xFD25, zero);  // braking resistor
   addHeld(0xFD26, load);
   addHeld(0xFD27, load);
@@ -111,7 +111,9 @@ void ToshibaVfs15::buildRecords()
 {
   const auto tens_of_hours = [](double seconds) { return std::floor(seconds / (10.0 * HOUR)); };
   // Energy units: F749.
-  const auto energy = [this](double share) { return std::floor(energy_ * share / std::pow(10.0, raw(F749) - 1.0)); };
+  const auto energy = [this](double share) {
+    return std::floor(usage_.energy() * share / std::pow(10.0, raw(F749) - 1.0));
+  };
   const Number trips[] = { 0xFE10, 0xFE11, 0xFE12, 0xFE13, 0xFD10, 0xFD11, 0xFD12, 0xFD13 };
   for (std::size_t age = 0; age < trips_.size(); ++age)
   {
@@ -120,14 +122,14 @@ void ToshibaVfs15::buildRecords()
   addMonitor(0xFD32, [this] { return std::floor((starts_[0] + starts_[1]) / 1000.0); });
   addMonitor(0xFD33, [this] { return std::floor(starts_[0] / 1000.0); });
   addMonitor(0xFD34, [this] { return std::floor(starts_[1] / 1000.0); });
-  addMonitor(0xFD41, [this, tens_of_hours] { return tens_of_hours(run_time_); });
+  addMonitor(0xFD41, [this, tens_of_hours] { return tens_of_hours(usage_.runTime()); });
   addMonitor(0xFE08, [] { return CPU1_VERSION; });
   addMonitor(0xFE73, [] { return CPU2_VERSION; });
-  addMonitor(0xFE14, [this] { return std::floor(run_time_ / HOUR); });
+  addMonitor(0xFE14, [this] { return std::floor(usage_.runTime() / HOUR); });
   addMonitor(0xFE76, [energy] { return energy(1.0); });
   addMonitor(0xFE77, [energy] { return energy(OUTPUT_SHARE); });
   addMonitor(0xFE79, [] { return 0.0; });
-  addMonitor(0xFE80, [this, tens_of_hours] { return tens_of_hours(power_time_); });
+  addMonitor(0xFE80, [this, tens_of_hours] { return tens_of_hours(usage_.powerTime()); });
   addMonitor(0xFB05, [this] { return capacityCode(); });
   addMonitor(0xFB07, [this] { return model_.series_code; });
   addMonitor(0xFC00, [] { return 0.0; });
@@ -208,8 +210,8 @@ std::uint16_t ToshibaVfs15::outputTerminals()
 std::uint16_t ToshibaVfs15::alarms() const
 {
   const bool timeout = watchdog_.expired() && raw(F804) == 0;
-  const unsigned int word =
-      bit(0, current() > HIGH_CURRENT * raw(FE70) / 10.0) | bit(2, thermal_ > EARLY_WARNING) | bit(12, timeout);
+  const unsigned int word = bit(0, outputCurrent() > HIGH_CURRENT * raw(FE70) / 10.0) |
+                            bit(2, usage_.heat() > EARLY_WARNING) | bit(12, timeout);
   return static_cast<std::uint16_t>(word & model_.alarm_bits);
 }
 }  // namespace simulation

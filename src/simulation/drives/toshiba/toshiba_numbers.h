@@ -103,8 +103,8 @@ constexpr Number FE71 = 0xFE71;  // rated voltage
 constexpr int TRIP_EMERGENCY = 17;      // E
 constexpr int TRIP_COMMUNICATION = 24;  // Err5
 
-/// Numbers whose last or last but one digit is A-F don't exist (E6581913 p. 68).
-/// @return the number that follows: 0099h -> 0100h; above FFFFh: none
+/// The number that follows: 0099h -> 0100h; above FFFFh: none. Numbers whose last or last but one digit is A-F don't exist
+/// (E6581913 p. 68).
 constexpr std::uint32_t next(std::uint32_t number)
 {
   do

@@ -25,18 +25,12 @@ const std::set<int> TRIP_CODES = { 1,  2,  3,  4,  5,  8,  9,  10, 11, 12, 13, 1
                                    52, 53, 55, 58, 62, 63, 64, 65, 69, 71, 72, 73, 84, 85, 86, 87 };  // p. 63
 }  // namespace
 
-Refusal ToshibaVfs15::trip(int code, TimePoint now)
+Refusal ToshibaVfs15::noSuchTrip(int code) const
 {
-  advance(now);
-  if (!powered())
-  {
-    return "the drive has no power";
-  }
   if (TRIP_CODES.count(code) == 0)
   {
     return "no trip code " + std::to_string(code) + " (those of E6581913 p. 63: 1-5, 8-24, 26-30, 32, ... 87)";
   }
-  doTrip(code);
   return std::nullopt;
 }
 
@@ -90,57 +84,20 @@ Refusal ToshibaVfs15::setSafeStop(bool active, TimePoint now)
   return std::nullopt;
 }
 
-void ToshibaVfs15::takeLoad(double load)
-{
-  motor_.setLoad(load);
-  change();
-}
-
-void ToshibaVfs15::takeBusy(TimePoint until)
-{
-  busy_until_ = until;
-}
-
 Refusal ToshibaVfs15::setParameter(const std::string& code, double value, TimePoint now)
 {
   advance(now);
-  const Index index = memory_.find(code);
   const std::optional<Bytes> bytes = fromHex(code);
   const Number monitor = bytes && bytes->size() == 2 ? static_cast<Number>((*bytes)[0] * 256U + (*bytes)[1]) : Number{};
-  if (index == ParameterMemory::NONE && monitors_.count(monitor) == 0)
+  if (memory_.find(code) != ParameterMemory::NONE || monitors_.count(monitor) == 0)
   {
-    return model_.name + " has no parameter " + code;
+    return BrandDrive::setParameter(code, value, now);
   }
-  if (index == ParameterMemory::NONE)
+  if (!(value >= 0.0 && value <= 65535.0))
   {
-    if (!(value >= 0.0 && value <= 65535.0))
-    {
-      return "value out of range (0-65535)";
-    }
-    pinned_[monitor] = static_cast<std::uint16_t>(value);
-    return std::nullopt;
+    return "value out of range (0-65535)";
   }
-  const Parameter info = asShown(index);
-  const double raw = std::round(value * std::pow(10.0, info.decimals));
-  if (!(raw >= 0.0 && raw <= 65535.0) || !memory_.accepts(index, static_cast<std::uint32_t>(raw)))
-  {
-    return "value out of range (" + panelText(info, info.minimum) + "-" + panelText(info, info.maximum) + ")";
-  }
-  store(index, static_cast<std::uint32_t>(raw));
-  control();
-  return std::nullopt;
-}
-
-Refusal ToshibaVfs15::parameter(const std::string& code, KeyValues& values) const
-{
-  const Index index = memory_.find(code);
-  if (index == ParameterMemory::NONE)
-  {
-    return model_.name + " has no parameter " + code;
-  }
-  const Parameter info = asShown(index);
-  values.emplace_back("ram", panelText(info, memory_.ram(index)));
-  values.emplace_back("eeprom", panelText(info, memory_.eeprom(index)));
+  pinned_[monitor] = static_cast<std::uint16_t>(value);
   return std::nullopt;
 }
 
@@ -149,41 +106,20 @@ bool ToshibaVfs15::runCommand() const
   return (ram_.at(FA00) & 0x0400U) != 0;
 }
 
-void ToshibaVfs15::describeMotor(KeyValues& values) const
+void ToshibaVfs15::describeBrand(ShowList& list) const
 {
-  const auto add = [&values](const char* key, const std::string& value) { values.emplace_back(key, value); };
-  const auto flag = [&add](const char* key, bool value) { add(key, value ? "1" : "0"); };
-  const double frequency = motor_.frequency();
-  add("model", model_.name);
-  add("frequency", twoDecimals(std::abs(frequency)));
-  add("direction", frequency == 0.0 ? "0" : (frequency > 0.0 ? "1" : "-1"));
-  add("target", twoDecimals(motor_.target()));
-  flag("running", motor_.turning());
-  add("ramp", motor_.accelerating() ? "accelerating" : (motor_.decelerating() ? "decelerating" : "none"));
-  add("command", util::hexText(ram_.at(FA00), 4));
-  flag("run_command", runCommand());
-  flag("run_effective", runs());
-  add("reference", twoDecimals(busFrequency()));
-  flag("tripped", tripped_);
-  add("trip", std::to_string(tripped_ ? trips_.front() : 0));
-  add("last_trip", std::to_string(trips_.front()));
-  add("trips", std::to_string(trip_count_));
-  add("alarms", util::hexText(alarms(), 4));
-  add("current", twoDecimals(current()));
-  add("load", twoDecimals(motor_.load()));
-  add("dc_voltage", twoDecimals(motor_.dcVoltage()));
-  add("temperature", twoDecimals(motor_.temperature()));
-  add("command_source", std::to_string(commandSource()));
-  add("frequency_source", std::to_string(frequencySource()));
-  flag("panel", local());
-  flag("held", held_by_key_);
-  flag("safe_stop", safe_stop_);
-  flag("busy", busy());
-  flag("reset_marker", ram_.at(FA87) != 0);
-  const bool off = watchdogTimeout() == Duration::zero();
-  add("watchdog", off ? "off" : (watchdog_.expired() ? "expired" : (watchdog_.started() ? "running" : "waiting")));
-  add("eeprom_writes", std::to_string(memory_.eepromWrites()));
-  add("stored_values", std::to_string(memory_.storedValues()));
+  list.text("command", util::hexText(ram_.at(FA00), 4));
+  list.flag("run_command", runCommand());
+  list.flag("run_effective", runs());
+  list.text("reference", twoDecimals(busFrequency()));
+  list.text("alarms", util::hexText(alarms(), 4));
+  list.number("command_source", commandSource());
+  list.number("frequency_source", frequencySource());
+  list.flag("panel", local());
+  list.flag("held", held_by_key_);
+  list.flag("safe_stop", safe_stop_);
+  list.flag("reset_marker", ram_.at(FA87) != 0);
+  list.number("stored_values", memory_.storedValues());
 }
 }  // namespace simulation
 }  // namespace inverter_bus

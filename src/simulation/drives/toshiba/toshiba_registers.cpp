@@ -38,16 +38,6 @@ bool rampTime(Number number)
 }
 }  // namespace
 
-ModbusException ToshibaVfs15::readCoils(std::uint16_t, std::uint16_t, std::vector<bool>&)
-{
-  return ModbusException::FunctionNotSupported;
-}
-
-ModbusException ToshibaVfs15::writeCoils(std::uint16_t, const std::vector<bool>&)
-{
-  return ModbusException::FunctionNotSupported;
-}
-
 bool ToshibaVfs15::isSlot(Number number) const
 {
   return model_.blocks && number >= BLOCK_WRITE && number <= BLOCK_LAST;
@@ -263,7 +253,7 @@ void ToshibaVfs15::apply(const Write& write)
   if (index != ParameterMemory::NONE)
   {
     stored_ = true;
-    store(index, write.value);
+    takeFromPanel(index, write.value);
     return;
   }
   ram_[write.number] = write.value;
@@ -279,7 +269,10 @@ void ToshibaVfs15::apply(const Write& write)
       speed_by_rpm_ = true;
       break;
     case FA20:
-      energy_ = (write.value & 0x0002U) != 0 ? 0.0 : energy_;
+      if ((write.value & 0x0002U) != 0)
+      {
+        usage_.clearEnergy();
+      }
       break;
     default:
       break;
@@ -316,7 +309,7 @@ void ToshibaVfs15::clearRunWhenCoasting()
   }
 }
 
-void ToshibaVfs15::store(Index index, std::uint32_t raw)
+void ToshibaVfs15::takeFromPanel(Index index, std::uint32_t raw)
 {
   memory_.writeBoth(index, raw);
   afterStore(memory_.info(index).number, raw);

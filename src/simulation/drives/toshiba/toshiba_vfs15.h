@@ -16,11 +16,9 @@
 #include <vector>
 
 #include "inverter_bus/simulation/drive_options.h"
-#include "simulation/drives/comm_watchdog.h"
-#include "simulation/drives/motor.h"
-#include "simulation/drives/parameter_memory.h"
+#include "simulation/drives/brand_drive.h"
+#include "simulation/drives/motor_usage.h"
 #include "simulation/drives/toshiba/toshiba_model.h"
-#include "simulation/modbus/modbus_slave.h"
 
 namespace inverter_bus
 {
@@ -33,56 +31,54 @@ namespace simulation
 /// Rating: `parameters: {FE70: 4.8, FE71: 200.0}` [A], [V], which FB05 and the identification follow; the scan list's
 /// rated_current is what a driver believes, so it doesn't count here.
 ///
-/// Where the manual is silent: broadcasts don't feed the communication timer; F805 adds to the processing time; FE00 ...
-/// FE90 follow the present values except in a trip; presets win over FA01; the later of FA01 and FA13 counts; a change of
-/// F519 keeps the ramp times; the STOP key holds the motor until RUN of the bus was off; coast means standstill at once.
+/// Where the manual is silent: while it is busy writes are answered with exception 04; broadcasts don't feed the
+/// communication timer; F805 adds to the processing time; FE00 ... FE90 follow the present values except in a trip;
+/// presets win over FA01; the later of FA01 and FA13 counts; a change of F519 keeps the ramp times; the STOP key holds
+/// the motor until RUN of the bus was off; coast means standstill at once.
 /// Not there: FA65-FA80 (panel texts), PID, terminal inputs, the switch-over F505, retries.
-class ToshibaVfs15 : public ModbusSlave
+class ToshibaVfs15 final : public BrandDrive<ModbusSlave>
 {
 public:
-  /// @throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate or station that
+  /// \throws std::invalid_argument for an unknown parameter, a value out of its range, or a baud rate or station that
   /// the drive doesn't have; the text names it
   ToshibaVfs15(const ToshibaModel& model, const DriveOptions& options);
 
-  /// @param code of E6581913 p. 63
-  Refusal trip(int code, TimePoint now) override;
   Refusal takeOverAtPanel(double hertz, TimePoint now) override;
   Refusal releasePanel(TimePoint now) override;
   Refusal pressStopKey(TimePoint now) override;
   /// The terminal ST: off (active) coasts, without a trip.
   Refusal setSafeStop(bool active, TimePoint now) override;
-  /// @param code also a monitor register such as "FC91": it shows this raw value until the drive is switched off
+  /// \p code may also be a monitor register such as "FC91": it shows this raw value until the drive is switched off.
   Refusal setParameter(const std::string& code, double value, TimePoint now) override;
-  Refusal parameter(const std::string& code, KeyValues& values) const override;
-
-  const Motor& motor() const override;
   bool runCommand() const override;
-  bool tripped() const;
 
 protected:
-  TimePoint nextChange(TimePoint limit) const override;
   void move(double seconds) override;
-  void change() override;
   void losePower() override;
   void gainPower() override;
-  double startUpTime() const override;
-  void takeLoad(double load) override;
-  /// Until then writes are answered with exception 04.
-  void takeBusy(TimePoint until) override;
-  void describeMotor(KeyValues& values) const override;
+  void control() override;
+  void doTrip(int code) override;
+  Refusal noSuchTrip(int code) const override;
+  int overcurrentTrip() const override;
+  double ratedCurrent() const override;
+  double outputCurrent() const override;
+  Duration watchdogTimeout() const override;
+  void onTimeout() override;
+  void changeMore() override;
+  Parameter asShown(Index index) const override;
+  void takeCommissioned(Index index, std::uint32_t raw) override;
+  void takeFromPanel(Index index, std::uint32_t raw) override;
+  void describeBrand(ShowList& list) const override;
 
   std::optional<Answer> answer(const Bytes& frame, TimePoint now, bool& good) override;
   bool isBroadcast(const Bytes& frame) const override;
   Duration replyDelay() const override;
   void heard(std::uint8_t function) override;
-  ModbusException readCoils(std::uint16_t wire, std::uint16_t count, std::vector<bool>& values) override;
-  ModbusException writeCoils(std::uint16_t wire, const std::vector<bool>& values) override;
   ModbusException readRegisters(std::uint16_t wire, std::uint16_t count, std::vector<std::uint16_t>& values) override;
   ModbusException writeRegisters(std::uint16_t wire, const std::vector<std::uint16_t>& values,
                                  std::uint8_t function) override;
 
 private:
-  using Index = ParameterMemory::Index;
   using Number = std::uint16_t;
 
   /// Parameters that count as they were at the last power-up, reset or F899 (p. 47, 48).
@@ -99,23 +95,16 @@ private:
   };
 
   // toshiba_vfs15.cpp: commissioning, power and time
-  void commission();
-  void commission(const std::string& code, double value);
+  void commissionLine();
   void takeEffect();
   void clearRam();
   std::uint32_t raw(Number number) const;
   double hertz(Number number) const;
-  void watchMotor(double seconds);
-  void doTrip(int code);
   void tripAfterStop(int code);
   void resetFault();
-  void onTimeout();
-  Duration watchdogTimeout() const;
   bool communicationMode() const;
-  bool busy() const;
 
   // toshiba_control.cpp: who commands what, and the motor
-  void control();
   Ramps ramps() const;
   bool command(unsigned int bit) const;
   bool local() const;
@@ -134,7 +123,6 @@ private:
   double busFrequency() const;
   double wantedFrequency() const;
   double limited(double hertz) const;
-  double current() const;
   double overloadLevel() const;
 
   // toshiba_frames.cpp: what is special about the frames
@@ -171,17 +159,11 @@ private:
   void apply(const Write& write);
   void applyCommand(std::uint16_t word);
   void clearRunWhenCoasting();
-  void store(Index index, std::uint32_t raw);
   void afterStore(Number number, std::uint32_t raw);
   void setTimeUnit(std::uint32_t unit);
   void restoreFactorySettings(std::uint32_t kind);
-  Parameter asShown(Index index) const;
 
   const ToshibaModel& model_;
-  DriveOptions options_;
-  ParameterMemory memory_;
-  Motor motor_;
-  CommWatchdog watchdog_;
   InEffect in_effect_;
   std::map<Number, std::uint16_t> ram_;  // FA00 ..., lost with the power
   bool speed_by_rpm_ = false;            // FA13 was written after FA01
@@ -189,23 +171,17 @@ private:
   std::map<Number, std::uint16_t> held_;    // FExx in a trip
   std::map<Number, std::uint16_t> pinned_;  // by hand
 
-  int panel_run_ = 0;         // -1, 0, 1: what the panel commands
-  bool held_by_key_ = false;  // STOP key
-  bool safe_stop_ = false;    // terminal ST off
-  bool tripped_ = false;
-  int trip_after_stop_ = 0;  // code
-  std::deque<int> trips_;    // newest first
-  std::uint32_t trip_count_ = 0;
+  int panel_run_ = 0;               // -1, 0, 1: what the panel commands
+  bool held_by_key_ = false;        // STOP key
+  bool safe_stop_ = false;          // terminal ST off
+  int trip_after_stop_ = 0;         // code
+  std::deque<int> trips_;           // newest first
   std::array<double, 2> starts_{};  // forward, reverse
   TimePoint powered_since_;
-  TimePoint busy_until_;
   bool silent_ = false;         // the present request gets no reply
   bool stored_ = false;         // the present request wrote the EEPROM
   bool timer_renewed_ = false;  // the present request set the communication timer, so it doesn't start it
-  double thermal_ = 0.0;        // motor overload, trips at 1
-  double run_time_ = 0.0;       // [s]
-  double power_time_ = 0.0;     // [s]
-  double energy_ = 0.0;         // [kWh] since it was cleared
+  MotorUsage usage_;
 };
 }  // namespace simulation
 }  // namespace inverter_bus

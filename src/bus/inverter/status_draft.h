@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 the inverter_bus authors
+#ifndef INVERTER_BUS_BUS_STATUS_DRAFT_H
+#define INVERTER_BUS_BUS_STATUS_DRAFT_H
+
+#include <optional>
+
+#include "bus/inverter/status_reads.h"
+
+namespace inverter_bus
+{
+namespace bus
+{
+/// What a refresh has told, with the time for which its run words count.
+struct StatusWords
+{
+  drive::Monitor monitor;
+  /// When the oldest request for a word that tells whether the motor runs left.
+  TimePoint sent_at;
+};
+
+/// The status that a refresh under way is about to make. Pure. Not thread safe; the bus guards it.
+class StatusDraft
+{
+public:
+  /// A refresh begins.
+  void restart();
+  /// \p reply brought \p read, whose values are decoded.
+  void take(const StatusRead& read, const wire::Reply& reply);
+  /// A read without values was answered at \p at: the drive is there.
+  void heard(TimePoint at);
+  /// The marker of a restart that was just read is dealt with: the rest of this refresh must not find it once more, after
+  /// the drive has been told what it had forgotten.
+  void restartNoted();
+  /// The reason of a trip is still to be read: it belongs into the first status that shows the trip. True once.
+  bool takeFaultDue();
+
+  /// What has come so far.
+  const StatusWords& words() const;
+  /// Enough has come for a status; \p run_needed: one of the reads tells whether the motor runs.
+  bool suffices(bool run_needed) const;
+  /// Arrival of the last fast reply; empty: none yet.
+  const std::optional<TimePoint>& stamp() const;
+
+private:
+  StatusWords words_;
+  std::optional<TimePoint> stamp_;
+  /// A run word was read.
+  bool run_read_ = false;
+  bool fault_asked_ = false;
+};
+}  // namespace bus
+}  // namespace inverter_bus
+
+#endif  // INVERTER_BUS_BUS_STATUS_DRAFT_H

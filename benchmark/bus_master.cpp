@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include <poll.h>
+#include <algorithm>
 #include <boost/program_options.hpp>
 #include <chrono>
 #include <cstdlib>
@@ -19,6 +20,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "benchmark/figures.h"
 #include "inverter_bus/bus/bus.h"
@@ -109,6 +111,32 @@ void pass(bus::Bus& driver, double time)
   }
 }
 
+std::uint16_t command(bus::Bus& driver, std::size_t index, double velocity)
+{
+  bus::VelocityCommand command;
+  command.targets = { { index, velocity } };
+  command.publisher.name = "/benchmark";
+  return driver.command(command);
+}
+
+/// A 0 opens the lock of each; its velocity is repeated until it is accepted, for at most 10 s.
+void startMotors(bus::Bus& driver, std::size_t inverters, double velocity)
+{
+  for (std::size_t index = 0; index < inverters; ++index)
+  {
+    command(driver, index, 0.0);
+  }
+  std::vector<bool> runs(inverters, false);
+  for (int round = 0; round < 200 && std::count(runs.begin(), runs.end(), false) > 0; ++round)
+  {
+    for (std::size_t index = 0; index < inverters; ++index)
+    {
+      runs[index] = runs[index] || command(driver, index, velocity) == bus::ERROR_NONE;
+    }
+    pass(driver, 0.05);
+  }
+}
+
 void play(const Options& options)
 {
   Errors errors;
@@ -119,16 +147,7 @@ void play(const Options& options)
   bus::Bus driver(std::move(configuration), std::move(port), errors);
   driver.start();
   pass(driver, options.warm_up);
-  for (const double velocity : { 0.0, options.velocity })
-  {
-    for (std::size_t index = 0; index < inverters; ++index)
-    {
-      bus::VelocityCommand command;
-      command.targets = { { index, velocity } };
-      command.publisher.name = "/benchmark";
-      driver.command(command);
-    }
-  }
+  startMotors(driver, inverters, options.velocity);
   const double before = cpu();
   const std::uint64_t requests = driver.report().bus.counters.requests;
   pass(driver, options.seconds);

@@ -52,7 +52,7 @@ public:
 
   const std::string& path() const;
   void world(const std::string& command);
-  /// Ends the thread. @return how late the wire was
+  /// Ends the thread, and says how late the wire was.
   simulation::Punctuality end();
 
   FrameLog frames;
@@ -116,7 +116,7 @@ class WakeUps
 public:
   WakeUps();
   ~WakeUps();
-  /// Ends it. @return [s] of each
+  /// Ends it, and returns the lateness of each wake-up [s].
   std::vector<double> end();
 
 private:

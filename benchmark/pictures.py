@@ -69,7 +69,7 @@ class Axes:
 
 def legend(names):
     for index, name in enumerate(names):
-        x = LEFT + 10 + 165 * (index % 4)
+        x = LEFT + 10 + 158 * (index % 4)
         y = 36 + 14 * (index // 4)
         yield '<rect x="%d" y="%d" width="10" height="10" fill="%s"/>' % (x, y - 9, COLOURS[index % len(COLOURS)])
         yield '<text x="%d" y="%d" font-size="11" %s>%s</text>' % (x + 14, y, FONT, escape(name))

@@ -220,8 +220,8 @@ def number_picture(results):
 
 def dead_picture(results):
     found = results.get('dead', [])
-    series = [('live ones beside dead ones', [(one['dead'], one['beside'] * 1e3) for one in found]),
-              ('the same live ones alone', [(one['dead'], one['alone'] * 1e3) for one in found]),
+    series = [('live beside dead ones', [(one['dead'], one['beside'] * 1e3) for one in found]),
+              ('live alone', [(one['dead'], one['alone'] * 1e3) for one in found]),
               ('plain loop', [(one['dead'], one['plain'] * 1e3) for one in found])]
     return pictures.lines('Cycle against dead drives of 31 MX2 at 19200 (virtual time)', 'dead drives', 'cycle [ms]', series)
 

@@ -145,6 +145,7 @@ def write(results, path):
 
 
 def draw(results, directory):
+    os.makedirs(directory, exist_ok=True)
     for name, make in report.PICTURES.items():
         with open(os.path.join(directory, name), 'w') as stream:
             stream.write(make(results))

@@ -27,7 +27,7 @@ def silence(baud):
 
 def warm_up(scene):
     """[s] in which a driver has certainly read the settings of all drives."""
-    return 3.0 + 0.7 * scene.inverters * 19200.0 / min(scene.baud, 19200)
+    return 5.0 + 0.7 * scene.inverters * 19200.0 / min(scene.baud, 19200)
 
 
 def scan_list(scene, port):

@@ -41,8 +41,8 @@ public:
   /// The parity that the client is taken to use, whatever its terminal shows (see terminal_settings.h). Call it before run().
   void assumeParity(Parity parity);
 
-  /// The last part of each wait is spent looking at the clock, which wakes up late by less than the kernel's timers, and
-  /// costs so much of a core. \p lead [s], 0: never. Call it before run().
+  /// The last \p lead seconds of each wait are spent looking at the clock, which is less late than the kernel's timers and
+  /// costs so much of a core; 0: never. Call it before run().
   void spin(double lead);
 
   /// Returns after stop(). \p realtime_priority 1 to 99: SCHED_FIFO for the calling thread, where that is permitted; 0: as
@@ -51,7 +51,7 @@ public:
   void stop() noexcept;
   std::string command(const std::string& line);
   const PseudoTerminal& terminal() const;
-  /// How late the wire was, so far. After run().
+  /// How late the wire was; 0 before run(). Call it after run().
   const Punctuality& punctuality() const;
 
 private:

@@ -18,7 +18,7 @@ namespace simulation
 class Punctuality
 {
 public:
-  /// @param kept not before `planned`; an instant that was kept early counts as kept exactly
+  /// An instant that was \p kept before it was \p planned counts as kept exactly.
   void add(TimePoint planned, TimePoint kept)
   {
     const Duration late = std::max(Duration::zero(), kept - planned);
@@ -32,13 +32,13 @@ public:
     return count_;
   }
 
-  /// @return [s] 0 when nothing was planned yet
+  /// [s]; 0 when nothing was planned yet.
   double mean() const
   {
     return count_ == 0 ? 0.0 : toSeconds(sum_) / static_cast<double>(count_);
   }
 
-  /// @return [s]
+  /// [s]
   double latest() const
   {
     return toSeconds(latest_);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fuzz/bus/observed.h"
+#include "fuzz/bus/recorder.h"
 
 namespace inverter_bus
 {

@@ -129,7 +129,7 @@ void LineWatch::frame(TimePoint now, const simulation::FrameRecord& frame)
     {
       checks_.supervision.check(now, *index);
       checks_.recorder.reached(now, *index, frame.bytes, frame.source == Source::Master);
-      checks_.values.sample(now, *index);
+      checks_.values.heard(now, *index);
     }
     return;
   }

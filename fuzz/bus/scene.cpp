@@ -272,7 +272,6 @@ private:
     parameters << "ACC: 1.0, dEC: " << facts.fixed_value;
     more = ", drive: toshiba_vfs15";
     facts.fed_by_word = feed_dice_.hits(0.4);
-    std::string overrides = facts.fed_by_word ? "feeds: command_word" : "";
     facts.block = scene_.name == "toshiba_block" || (scene_.name == "mixed" && dice_.hits(0.5));
     if (facts.block)
     {
@@ -296,10 +295,13 @@ private:
     {
       // FC90 is 0 while it is healthy.
       facts.listed_trips = { 0, 1, 2 };
-      overrides += overrides.empty() ? "" : ", ";
-      overrides += "status: {faulted: {register: 0xFC90, values: {\"0\": 0, \"1\": 1, \"2\": 1}}}";
+      more += std::string(", overrides: {") + (facts.fed_by_word ? "feeds: command_word, " : "") +
+              "status: {faulted: {register: 0xFC90, values: {\"0\": 0, \"1\": 1, \"2\": 1}}}}";
     }
-    more += overrides.empty() ? "" : ", overrides: {" + overrides + "}";
+    else if (facts.fed_by_word)
+    {
+      more += ", overrides: {feeds: command_word}";
+    }
   }
 
   Dice dice_;

@@ -179,8 +179,9 @@ TEST(Scheduling, commandsOfOneExchangeGoKindByKindInNodeOrder)
 {
   VirtualBus bus(belts(3));
   bus.settleIn();
-  // The drives' settings have been read, too.
+  // The drives' settings have been read, too; the refresh of 1 comes next.
   bus.run(3.0);
+  bus.runUntil(1.0, [&] { return bus.requests().back() == "03 03 10 00 00 04"; });
   bus.clearFrames();
   for (const std::size_t index : { 2, 0, 1 })
   {

@@ -41,14 +41,14 @@ void SlowReads::begins(TimePoint now)
   }
   const double interval = observed_.scene.slow_interval;
   const std::string title = observed_.scene.title(*facts.inverter);
-  if (interval <= 0.0)
-  {
-    fail(now, "no slow value is read with slow_interval 0", title);
-  }
   const auto last = answered_[*facts.inverter].find(facts.address);
   // After a lost exchange any read may go that no late reply answers, so that the drive's own time-out does not pass.
   const TimePoint lost_at = observed_.inverters[*facts.inverter].link.lost_at;
   const bool disturbed = lost_at != TimePoint() && now - lost_at < seconds(BARRED_S);
+  if (interval <= 0.0 && !disturbed)
+  {
+    fail(now, "no slow value is read with slow_interval 0", title);
+  }
   const bool early =
       !disturbed && last != answered_[*facts.inverter].end() && now - last->second < seconds(interval - TOLERANCE_S);
   if (early && warningWords().count(facts.address) == 0)

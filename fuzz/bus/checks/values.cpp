@@ -62,6 +62,12 @@ void Values::glance(TimePoint now, std::size_t index)
   sample(now, index);
 }
 
+void Values::heard(TimePoint now, std::size_t index)
+{
+  widen(index);
+  sample(now, index);
+}
+
 void Values::sample(TimePoint now, std::size_t index)
 {
   std::deque<Sample>& samples = lanes_[index].samples;

@@ -28,7 +28,9 @@ public:
   void begins(TimePoint now);
   /// Something is about to happen to a drive, or has happened.
   void glance(TimePoint now, std::size_t index);
-  /// The drive heard a request: what it answers is what it has now, not at the end of the exchange.
+  /// The drive heard a request: what it answers is what it has now, not at the end of the exchange, when a new frequency that
+  /// came with it has changed that.
+  void heard(TimePoint now, std::size_t index);
   void sample(TimePoint now, std::size_t index);
   /// The drive's time has passed up to \p now.
   void answered(TimePoint now, std::size_t index, const ReplyFacts& reply);

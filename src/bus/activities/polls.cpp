@@ -162,6 +162,14 @@ void Polls::cameWithWrite(const InFlight& current, const wire::Reply& reply)
   repeats_[inverter.index].restart();
   inverter.liveness.dataRead();
   const bool more = inverter.refresh.received(reply);
+  if (!bus_.shutting_down)
+  {
+    // It was a turn of the refresh, too: the cycle goes on with the next inverter.
+    Pick turn;
+    turn.what = Pick::What::Refresh;
+    turn.inverter = inverter.index;
+    bus_.scheduler.done(turn, reply.sent_at, reply.finished_at, more, true);
+  }
   took(reply, inverter, more);
 }
 

@@ -264,6 +264,7 @@ const Mistake MISTAKES[] = {
   { "DriveLossActionInItsOldPlace", "faults:", "communication_loss: {drive_loss_action: coast}\nfaults:", "communication_loss.drive_loss_action", "unknown key", 0 },
   { "DriveTimeOutNegative", "faults:", "drive_timeout: -1\nfaults:", "drive_timeout", "value '-1': allowed: a number from 0 to 3600", 0 },
   { "UnknownKindOfWrites", "faults:", "writes: maybe\nfaults:", "writes", "allowed: ram, eeprom, unknown", 0 },
+  { "UnknownFeeds", "faults:", "feeds: reads\nfaults:", "feeds", "allowed: everything, writes, command_word", 0 },
   { "QuietTooLong", "faults:", "timing: {quiet_before: 2}\nfaults:", "timing.quiet_before", "from 0 to 1", 0 },
 };
 // clang-format on

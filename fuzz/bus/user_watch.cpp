@@ -126,6 +126,7 @@ void UserWatch::stopRequested(TimePoint now, std::optional<std::size_t> index)
     checks_.lockUp(now, one, true);
     checks_.zeros.drop(one);
     checks_.stops.requested(now, one);
+    checks_.cut_waits.asked(now, one);
     checks_.recorder.stopRequested(one);
   }
 }

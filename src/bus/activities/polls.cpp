@@ -69,10 +69,12 @@ void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current, cons
   const std::uint8_t station = inverter.config.node;
   wire::Request request;
   bool with_status = false;
+  bool repeats = false;
   if (inverter.mayRepeatWords(now) && !inverter.movement.wordsInForce().empty())
   {
     const std::vector<drive::Word> words = inverter.movement.wordsInForce();
     const drive::ReadBlock& block = inverter.refresh.asked().block;
+    repeats = true;
     with_status = !block.chosen.empty() && inverter.drive.fitsBlockWrite(words);
     request = with_status ? inverter.drive.writeAndRead(station, words, block)
                           : inverter.drive.write(station, words.back().first, words.back().second);
@@ -85,6 +87,7 @@ void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current, cons
   {
     current.request = request;
     current.keeps_alive = !with_status;
+    current.may_start = repeats;
     current.slow = false;
     current.pick.what = with_status ? current.pick.what : Pick::What::KeepAlive;
   }

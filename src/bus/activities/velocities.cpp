@@ -73,6 +73,7 @@ Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffi
   , frames_(bus.inverters.size(), 0)
   , read_lost_at_(bus.inverters.size())
   , single_(bus.inverters.size(), false)
+  , zero_at_(bus.inverters.size())
 {
 }
 
@@ -284,7 +285,14 @@ bool Velocities::applyZero(TimePoint now, Inverter& inverter, const Publisher& p
     return false;
   }
   inverter.movement.aim(target);
+  zero_at_[inverter.index] = now;
   return inverter.movement.active();
+}
+
+bool Velocities::zeroAskedSince(std::size_t index, TimePoint time) const
+{
+  const auto& target = bus_.inverters[index]->movement.target();
+  return zero_at_[index] >= time && target && target->zero && bus_.scheduler.velocityWaits(index);
 }
 
 bool Velocities::applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)

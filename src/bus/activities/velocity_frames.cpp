@@ -92,6 +92,8 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick, con
       current.write = *write;
       current.with_status = with_status;
       current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
+      current.may_start = write->starts || (current.moves && !write->more.empty());
+      current.lasting = wears(current);
       current.request = inverter.prepared(write->request);
       return current;
     }
@@ -193,6 +195,23 @@ bool Velocities::refusedWithStatus(const InFlight& current, const wire::Reply& r
   bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, reply.finished_at, false);
   turns_.finish(current, reply, true);
   return true;
+}
+
+void Velocities::cut(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  const TimePoint now = reply.finished_at;
+  noteLostRead(current, reply);
+  if (!current.resync)
+  {
+    inverter.movement.doubtful(current.write, now);
+  }
+  if (bus_.scheduler.velocityWaits(current.inverter))
+  {
+    bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, now,
+                            inverter.movement.target() && inverter.movement.target()->zero);
+  }
+  turns_.finish(current, reply, !bus_.scheduler.members(current.pick.command).empty());
 }
 
 /// It is not sent again.

@@ -91,6 +91,7 @@ void UserWatch::takeZero(TimePoint now, std::size_t index, const bus::Publisher&
 void UserWatch::takeRunOff(TimePoint now, std::size_t index)
 {
   checks_.zeros.commanded(now, index);
+  checks_.cut_waits.zeroCame();
   checks_.refusals.forget(index);
   checks_.forbid(now, index);
 }

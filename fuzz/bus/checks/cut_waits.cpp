@@ -53,6 +53,11 @@ void CutWaits::asked(TimePoint now, std::size_t index)
   }
 }
 
+void CutWaits::zeroCame()
+{
+  zero_came_ = true;
+}
+
 void CutWaits::dropAll()
 {
   std::fill(due_.begin(), due_.end(), std::nullopt);
@@ -106,12 +111,15 @@ Duration CutWaits::pause() const
 void CutWaits::begins(TimePoint now)
 {
   judgeLatency(now);
+  insisted_ = insists();
+  const bool superseded = zero_came_;
+  zero_came_ = false;
   std::fill(due_.begin(), due_.end(), std::nullopt);
-  if (cut_)
+  if (cut_ && !superseded)
   {
     judgeCut(now);
-    cut_.reset();
   }
+  cut_.reset();
 }
 
 /// The frame after one that was given up early.
@@ -185,12 +193,12 @@ void CutWaits::ended(TimePoint now)
   const Duration waited = silent ? now - exchange.request_end : now - exchange.heard_at;
   const Duration least = silent ? shortest(index) : seconds(SHORTEST_PAUSE_S - TOLERANCE_S);
   // Between two tries of a stop that insists who does not answer is waited for as short as one likes.
-  if (waited < least && !insists())
+  if (waited < least && !insisted_ && !insists())
   {
     fail(now, "a drive has its time before a stop cuts the wait",
          "given up after " + decimal(toSeconds(waited) * 1e3) + " ms instead of " + decimal(toSeconds(least) * 1e3));
   }
-  if (!insists())
+  if (!insisted_ && !insists())
   {
     cut_ = exchange;
   }

@@ -23,6 +23,8 @@ public:
 
   /// Somebody has called the service, or all wait for something else to end.
   void asked(TimePoint now, std::size_t index);
+  /// 0, or near it, was commanded.
+  void zeroCame();
   void dropAll();
   /// A request is about to go, and the record knows it.
   void begins(TimePoint now);
@@ -64,6 +66,10 @@ private:
   /// The exchange before, if it ended early.
   std::optional<Exchange> cut_;
   TimePoint heard_at_;
+  /// A stop insisted when the exchange in flight was chosen.
+  bool insisted_ = false;
+  /// A 0 has come since, which a newer velocity may supersede before it can go.
+  bool zero_came_ = false;
   std::uint64_t checked_ = 0;
 };
 }  // namespace checks

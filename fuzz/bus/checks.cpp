@@ -16,6 +16,7 @@ Checks::Checks(const Scene& scene, simulation::SimulatedBus& bus, const util::Cl
   , observed(recorder.observed())
   , line(observed)
   , stops(observed)
+  , cut_waits(observed)
   , confirmed_stops(observed, plant)
   , watchdog(observed)
   , zeros(observed)

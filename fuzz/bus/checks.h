@@ -8,6 +8,7 @@
 #include "fuzz/bus/checks/bounded_velocities.h"
 #include "fuzz/bus/checks/commands.h"
 #include "fuzz/bus/checks/confirmed_stops.h"
+#include "fuzz/bus/checks/cut_waits.h"
 #include "fuzz/bus/checks/line.h"
 #include "fuzz/bus/checks/liveness.h"
 #include "fuzz/bus/checks/locks.h"
@@ -55,6 +56,7 @@ struct Checks
 
   checks::Line line;
   checks::Stops stops;
+  checks::CutWaits cut_waits;
   checks::ConfirmedStops confirmed_stops;
   checks::Watchdog watchdog;
   checks::Zeros zeros;

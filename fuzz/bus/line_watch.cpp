@@ -26,6 +26,7 @@ void LineWatch::lost(TimePoint now)
 {
   checks_.recorder.lost(now);
   checks_.stops.dropAll();
+  checks_.cut_waits.dropAll();
   checks_.zeros.dropAll();
   checks_.probes.lost();
 }
@@ -43,6 +44,7 @@ void LineWatch::sending(TimePoint now, const simulation::Bytes& frame)
   checks_.line.checkStation(now);
   expireWatchdogs(now);
   checks_.stops.checkNextFrame(now);
+  checks_.cut_waits.begins(now);
   checks_.turns.check(now);
   checks_.bounded_velocities.check(now);
   checkCommandWords(now);
@@ -108,7 +110,7 @@ void LineWatch::stepped(TimePoint now)
 void LineWatch::endExchange(TimePoint now)
 {
   checks_.recorder.ended(now);
-  checks_.line.ended(now);
+  checks_.cut_waits.ended(now);
   checks_.liveness.ended();
   checks_.turns.ended();
   checks_.bounded_velocities.ended();
@@ -148,6 +150,7 @@ void LineWatch::takeReply(TimePoint now, const simulation::FrameRecord& frame, s
   {
     checks_.plant.advance(now, index);
     checks_.recorder.answered(now, index, reply);
+    checks_.cut_waits.answered(frame.time, reply.good);
     takeAnswer(now, index, reply);
   }
   else if (reply.kind == ReplyFacts::Kind::LateStop)

@@ -34,6 +34,10 @@ struct Exchange
   simulation::Bytes request;
   RequestFacts facts;
   bool answered = false;
+  TimePoint request_end;  ///< its last byte
+  TimePoint heard_at;     ///< the last bytes since; the epoch: none
+  /// It was given up before its time: a stop has cut the wait.
+  bool cut = false;
   /// It is sent to an inverter that was shown as offline.
   bool to_offline = false;
   /// It carries a RUN that the drive has acknowledged already.

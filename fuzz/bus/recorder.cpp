@@ -13,6 +13,9 @@ namespace
 constexpr std::size_t LONGEST_NOISE = 8;
 // A VF-S15 starts anew; no profile says more.
 constexpr double DEAF_AFTER_RESET_S = 3.0;
+constexpr double PAUSE_S = 0.025;  // contract, 8.12
+constexpr double LEAST_PAUSE_S = 0.001;
+constexpr double TIME_TOLERANCE_S = 2e-6;
 }  // namespace
 
 Recorder::Recorder(const Scene& scene, const Plant& plant)
@@ -53,6 +56,7 @@ void Recorder::disturbed(TimePoint now)
 void Recorder::heard(TimePoint now)
 {
   observed_.heard_in_between = observed_.exchange.in_flight ? observed_.heard_in_between : now;
+  observed_.exchange.heard_at = observed_.exchange.in_flight ? now : observed_.exchange.heard_at;
 }
 
 void Recorder::begins(TimePoint now, const simulation::Bytes& request)
@@ -65,6 +69,7 @@ void Recorder::begins(TimePoint now, const simulation::Bytes& request)
   exchange.began = now;
   exchange.request = request;
   exchange.facts = readRequest(scene_, request);
+  exchange.request_end = now + seconds(scene_.character * static_cast<double>(request.size()));
   if (!exchange.facts.inverter)
   {
     return;
@@ -125,6 +130,7 @@ void Recorder::ended(TimePoint now)
   {
     return;
   }
+  exchange.cut = givenUpEarly(now);
   InverterRecord& inverter = observed_.inverters[*facts.inverter];
   inverter.link.deaf_until = facts.reset ? now + seconds(DEAF_AFTER_RESET_S) : inverter.link.deaf_until;
   if (exchange.answered)
@@ -139,6 +145,19 @@ void Recorder::ended(TimePoint now)
     // Which set-point it has now is unknown.
     inverter.words.set_answered.reset();
   }
+}
+
+/// The exchange that ends has not had its time: neither that of the drive, nor, once something came, that of a pause.
+bool Recorder::givenUpEarly(TimePoint now) const
+{
+  const Exchange& exchange = observed_.exchange;
+  const double patience = scene_.inverters[*exchange.facts.inverter].response_timeout - TIME_TOLERANCE_S;
+  const bool in_time = now - exchange.request_end < seconds(patience);
+  const Duration since = now - exchange.heard_at;
+  const bool heard = exchange.heard_at != TimePoint();
+  // What ends it at once was taken for an answer: the late one to a stop can't be told from that.
+  const bool paused = heard && (since >= seconds(PAUSE_S - TIME_TOLERANCE_S) || since < seconds(LEAST_PAUSE_S));
+  return observed_.connected && !exchange.answered && exchange.facts.expects_reply && in_time && !paused;
 }
 
 void Recorder::reached(TimePoint now, std::size_t index, const simulation::Bytes& request, bool ours)

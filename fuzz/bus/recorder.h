@@ -90,6 +90,7 @@ private:
 
   ReplyKind readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply, unsigned& refusal) const;
   void noteWords(std::size_t index, bool good);
+  bool givenUpEarly(TimePoint now) const;
 
   const Scene& scene_;
   const Plant& plant_;

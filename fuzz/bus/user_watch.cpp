@@ -91,6 +91,7 @@ void UserWatch::takeZero(TimePoint now, std::size_t index, const bus::Publisher&
 void UserWatch::takeRunOff(TimePoint now, std::size_t index)
 {
   checks_.zeros.commanded(now, index);
+  checks_.cut_waits.zeroCame();
   checks_.refusals.forget(index);
   checks_.forbid(now, index);
 }
@@ -126,6 +127,7 @@ void UserWatch::stopRequested(TimePoint now, std::optional<std::size_t> index)
     checks_.lockUp(now, one, true);
     checks_.zeros.drop(one);
     checks_.stops.requested(now, one);
+    checks_.cut_waits.asked(now, one);
     checks_.recorder.stopRequested(one);
   }
 }

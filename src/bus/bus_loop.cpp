@@ -61,6 +61,11 @@ LineFacts factsOf(const wire::Line& line)
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, util::Clock& clock, std::mutex& mutex)
   : coordinator_(coordinator), line_(line), clock_(clock), mutex_(mutex)
 {
+  give_way_.stop_waits = [this] {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    return coordinator_.stopWaits(clock_.now());
+  };
+  give_way_.pause = line_.timing().briefPause();
 }
 
 bool BusLoop::portInUse() const
@@ -143,6 +148,8 @@ void BusLoop::lookAtAdapter()
   }
   next_look_ = now + seconds(ADAPTER_PERIOD_S);
   const std::optional<wire::AdapterLatency> latency = line_.adapterLatency();
+  // What lies in the adapter is no pause of the drive.
+  give_way_.pause = line_.timing().briefPause() + (latency ? latency->latency : Duration{ 0 });
   const std::lock_guard<std::mutex> guard(mutex_);
   coordinator_.noteAdapter(latency);
 }
@@ -188,7 +195,7 @@ TimePoint BusLoop::step()
   }
   lookAtAdapter();
   // First the silence that every request needs, then the decision: what arrives meanwhile, above all a stop, is taken.
-  const bool there = line_.settle();
+  const bool there = line_.settle(give_way_);
   if (there && reopen())
   {
     return clock_.now();
@@ -222,7 +229,9 @@ TimePoint BusLoop::step()
   {
     return wake;
   }
-  const wire::Reply reply = line_.exchange(exchange->request, exchange->turnaround);
+  give_way_.silence = exchange->cut_after.value_or(Duration{ 0 });
+  const wire::Reply reply =
+      line_.exchange(exchange->request, exchange->turnaround, exchange->cut_after ? give_way_ : wire::GiveWay());
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     coordinator_.noteLine(clock_.now(), factsOf(line_));

@@ -37,6 +37,7 @@ private:
   wire::Line& line_;
   util::Clock& clock_;
   std::mutex& mutex_;
+  wire::GiveWay give_way_;
   TimePoint next_open_;
   TimePoint next_look_;
   /// An attempt to open the port is under way.

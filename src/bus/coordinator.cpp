@@ -79,8 +79,10 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, const Line
     return std::nullopt;
   }
   freeze_.backBy(now + activities_.turns.longestExchange());
+  in_flight_->chosen_at = now;
   Exchange exchange;
   exchange.request = in_flight_->request;
+  exchange.cut_after = activities_.waits.cutAfter(*in_flight_);
   if (exchange.request.broadcast)
   {
     exchange.turnaround = seconds(bus_.inverters.front()->drive.profile().broadcast_turnaround);
@@ -107,6 +109,8 @@ std::optional<InFlight> Coordinator::chosen(TimePoint now, const LineView& line,
     if (current && !activities_.telnet.mustWait(now, *current) && activities_.guard.makeSafe(now, *current, line))
     {
       current->cost = line.cost(current->request);
+      current->full_wait = line.costUnanswered(current->request);
+      activities_.waits.shorten(*current, line);
       return current;
     }
   }
@@ -216,6 +220,11 @@ void Coordinator::ended(const InFlight& current, const wire::Reply& reply)
   {
     activities_.port.works();
   }
+  if (reply.cut)
+  {
+    cut(current, reply);
+    return;
+  }
   bus_.last_error = reply.outcome == wire::Outcome::Ok ? std::uint16_t{ 0 } : reply.error_id;
   if (current.pick.what == Pick::What::Broadcast)
   {
@@ -239,6 +248,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
   inverter.noteExchange(reply);
+  activities_.waits.note(current, reply);
   if (current.request.expects_reply)
   {
     inverter.record.note(reply);
@@ -263,6 +273,37 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
   else if (!current.loopback && isAnswered(reply))
   {
     inverter.loopback.otherAnswered();
+  }
+}
+
+/// A stop has ended the wait (contract, 8.4): nobody knows what came of it, and nobody is to blame. It goes again in its
+/// turn.
+void Coordinator::cut(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  inverter.noteExchange(reply);
+  inverter.link.noteCost(current.pick.probe, reply.outcome, activities_.turns.price(current, reply));
+  if (!current.resync && current.may_start)
+  {
+    // Another inverter's stop was in a hurry; its own goes when this frame has had its time.
+    inverter.pauses.holdStop(reply.sent_at + current.full_wait);
+  }
+  const bool goes_on = current.pick.what == Pick::What::Service || current.pick.what == Pick::What::Refresh;
+  switch (current.pick.what)
+  {
+    case Pick::What::Stop:
+      endedBy(current, reply);
+      break;
+    case Pick::What::Velocity:
+      activities_.velocities.cut(current, reply);
+      break;
+    case Pick::What::Connect:
+    case Pick::What::Setting:
+      activities_.settings.cut(current, reply);
+      break;
+    default:
+      activities_.turns.finish(current, reply, goes_on);
+      break;
   }
 }
 

@@ -47,6 +47,8 @@ public:
     wire::Request request;
     /// Silence to keep after a broadcast.
     Duration turnaround{ 0 };
+    /// Silence after which a stop ends the wait (stopWaits()); nothing: that takes its full time.
+    std::optional<Duration> cut_after;
   };
   /// The next exchange to make right now; nothing: ask again at \p wake or when something was requested.
   /// \p line is not kept either.
@@ -56,6 +58,8 @@ public:
   bool tick(TimePoint now);
   /// The first byte of that exchange is leaving now.
   void sent(TimePoint now);
+  /// A stop waits that ends the wait for that exchange; between two of them, that is to go next.
+  bool stopWaits(TimePoint now);
   /// Its end.
   void done(const wire::Reply& reply);
 
@@ -107,6 +111,7 @@ private:
   void ended(const InFlight& current, const wire::Reply& reply);
   void noteReply(const InFlight& current, const wire::Reply& reply);
   void endedBy(const InFlight& current, const wire::Reply& reply);
+  void cut(const InFlight& current, const wire::Reply& reply);
 
   BusState bus_;
   Activities activities_;

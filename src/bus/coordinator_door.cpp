@@ -85,6 +85,13 @@ void Coordinator::noteLine(TimePoint now, const LineFacts& facts)
 void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
 {
   activities_.reports.noteAdapter(latency);
+  activities_.waits.noteAdapter(latency ? latency->latency : Duration{ 0 });
+}
+
+bool Coordinator::stopWaits(TimePoint now)
+{
+  bus_.outbox.at(now);
+  return activities_.waits.stopWaits(now, in_flight_);
 }
 
 // --- the port --------------------------------------------------------------------------------------------------------

@@ -21,6 +21,8 @@ struct InFlight
   wire::Request request;
   /// Time that it occupies the line if it is answered at once.
   Duration cost{ 0 };
+  /// The same if nobody answers it, with the full time-out.
+  Duration full_wait{ 0 };
   /// A loop-back that makes sure that no late reply is on its way; the real request follows.
   bool resync = false;
   /// The request is a loop-back, as a probe or for resync.
@@ -29,6 +31,14 @@ struct InFlight
   bool may_be_late = false;
   /// A velocity's frame that may set RUN or raise the frequency.
   bool moves = false;
+  /// It may set RUN: a stop of the same inverter waits for its reply (contract, 8.4).
+  bool may_start = false;
+  /// It reaches the drive's EEPROM, or resets it: it is waited for whatever comes (contract, 8.4).
+  bool lasting = false;
+  /// Its reply is not waited for in full.
+  bool brief = false;
+  /// When it was decided that it goes.
+  TimePoint chosen_at;
   Write write;
 };
 

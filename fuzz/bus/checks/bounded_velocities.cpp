@@ -41,7 +41,9 @@ void BoundedVelocities::ended()
 {
   const RequestFacts& facts = observed_.exchange.facts;
   // Words that a refresh repeats are no velocity's.
-  if (facts.inverter && !observed_.exchange.answered && facts.commands() && !facts.stop && !facts.with_read)
+  // Nor is one a try that a stop has cut.
+  if (facts.inverter && !observed_.exchange.answered && !observed_.exchange.cut && facts.commands() && !facts.stop &&
+      !facts.with_read)
   {
     ++lost_[*facts.inverter];
   }

@@ -30,7 +30,6 @@ void Line::opened(TimePoint now)
 void Line::heard(TimePoint now)
 {
   heard_at_ = now;
-  heard_since_request_ = true;
 }
 
 void Line::begins(TimePoint now, const simulation::Bytes& request)
@@ -41,7 +40,6 @@ void Line::begins(TimePoint now, const simulation::Bytes& request)
   }
   checkGap(now);
   request_end_ = now + seconds(observed_.scene.character * static_cast<double>(request.size()));
-  heard_since_request_ = false;
 }
 
 /// Rule 3.8: silence before each request, counted from the last byte that came or went.
@@ -73,23 +71,6 @@ void Line::checkBroadcast(TimePoint now) const
   if (facts.broadcast && (!observed_.scene.one_brand || !facts.stop))
   {
     fail(now, "broadcasts", "a broadcast that is no stop, or on a bus of several brands");
-  }
-}
-
-/// A drive is given its time before the next request goes out; one that is offline is waited for as short as one likes.
-void Line::ended(TimePoint now) const
-{
-  const Exchange& exchange = observed_.exchange;
-  const RequestFacts& facts = exchange.facts;
-  if (exchange.answered || heard_since_request_ || exchange.to_offline || !facts.expects_reply || !facts.inverter ||
-      !observed_.connected)
-  {
-    return;
-  }
-  const double patience = observed_.scene.inverters[*facts.inverter].response_timeout;
-  if (now - request_end_ < seconds(patience) - seconds(GAP_TOLERANCE_S))
-  {
-    fail(now, "one request in flight", "given up after " + decimal(toSeconds(now - request_end_)) + " s of silence");
   }
 }
 }  // namespace checks

@@ -11,8 +11,7 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rules 3.1, 3.3 and 3.8: one request at a time, silence before it, time for its reply, and broadcasts only where they
-/// are safe.
+/// Rules 3.1, 3.3 and 3.8: one request at a time, silence before it, and broadcasts only where they are safe.
 class Line
 {
 public:
@@ -25,7 +24,6 @@ public:
   /// Once it does.
   void checkStation(TimePoint now) const;
   void checkBroadcast(TimePoint now) const;
-  void ended(TimePoint now) const;
 
 private:
   void checkGap(TimePoint now) const;
@@ -33,7 +31,6 @@ private:
   const Observed& observed_;
   TimePoint request_end_;
   TimePoint heard_at_;
-  bool heard_since_request_ = false;
 };
 }  // namespace checks
 }  // namespace fuzz

@@ -43,10 +43,26 @@ public:
   /// the gap.
   Duration patience(double gap_characters) const;
 
+  /// The longest pause inside a reply that a drive and a UART make: 5 ms, or the 18 characters after which the FIFO of a
+  /// 16550A tells of the next bytes if they are longer. Adapters and networks add theirs.
+  Duration briefPause() const;
+
 private:
   double character_s_;
   bool fast_;
   Duration pause_;
+};
+
+/// What ends a wait for a reply early: a stop (contract, 8.4).
+struct GiveWay
+{
+  /// True: a stop waits for the line. Asked in the bus thread, again and again while nothing comes; it must be quick.
+  /// Empty: every wait takes its full time.
+  std::function<bool()> stop_waits;
+  /// Silence after the request's last byte within which the reply is waited for all the same.
+  Duration silence{ 0 };
+  /// The same inside a reply, after the last byte that came.
+  Duration pause{ 0 };
 };
 
 /// A frame that passed the line, for the flight recorder.
@@ -131,8 +147,9 @@ public:
 
   /// Sleeps until readyAt() and takes what arrived meanwhile (late replies, frames of a second master, noise),
   /// extending the wait until the line has been silent for a gap; at most 100 ms, so that babble cannot stop a stop.
+  /// The rest of a frame that has begun is waited for with patience(), while a stop waits with \p give_way.pause.
   /// Returns false when the port is gone (it is closed then); after true, readyAt() has passed.
-  bool settle();
+  bool settle(const GiveWay& give_way = GiveWay());
 
   /// True if a late reply to an earlier request could not be taken for the answer to \p request.
   bool mayAsk(const Request& request) const;
@@ -143,8 +160,10 @@ public:
 
   /// Sends, after the silence that Request::quiet_before asks for, and waits for the answer; closes the port if it is
   /// lost. Call settle() before. Does not consult mayAsk(): a stop is exempt from it. \p turnaround_after silence to
-  /// keep after a broadcast.
-  Reply exchange(const Request& request, Duration turnaround_after = Duration{ 0 });
+  /// keep after a broadcast. \p give_way what ends the wait early (Reply::cut); the shape of the request is barred as
+  /// after a time-out. Not where a gateway has the request (contract, 8.8).
+  Reply exchange(const Request& request, Duration turnaround_after = Duration{ 0 },
+                 const GiveWay& give_way = GiveWay());
 
   /// Time that an answered exchange occupies the line: gap, request, gap + reply delay, reply.
   Duration cost(const Request& request, Duration drive_delay) const;
@@ -190,12 +209,13 @@ public:
 
 private:
   struct Waiting;
-  bool settle(Duration quiet);
+  bool settleFor(Duration quiet, const GiveWay& give_way);
   bool send(const Bytes& frame, Reply& reply);
-  Waiting startWaiting(const Request& request, TimePoint sent_at);
+  Waiting startWaiting(const Request& request, TimePoint sent_at, const GiveWay& give_way);
   void waitForReply(Waiting& waiting, Reply& reply);
   TimePoint waitUntil(const Waiting& waiting) const;
   ReceiveResult receive(TimePoint deadline);
+  ReceiveResult receiveUnlessCut(TimePoint deadline, TimePoint from, const GiveWay& give_way, bool& cut);
   bool consume(Waiting& waiting, Reply& reply);
   bool consumeHead(Waiting& waiting, Reply& reply);
   bool answer(Waiting& waiting, const Parsed& parsed, const Bytes& raw, Reply& reply);
@@ -208,7 +228,6 @@ private:
   void consumeIdle();
   void flushIdle();
   void consumeIdleHead();
-  void stripEcho();
   bool noteUnasked(const Parsed& parsed, const Bytes& raw);
   bool takeLate(const Parsed& parsed);
   bool takeLateFromGateway(const Parsed& parsed);

@@ -79,6 +79,8 @@ struct Reply
   TimePoint finished_at;
   /// Silence between the end of the request on the wire and the first byte of the reply (Ok and Exception only).
   Duration turnaround{ 0 };
+  /// The same until the port handed over the first bytes: adapters and FIFOs collect some (Ok and Exception only).
+  Duration heard_after{ 0 };
   /// Running number of the line's requests, from 1; never used twice. A late reply bears that of its request. 0: nothing
   /// was sent.
   std::uint64_t ticket = 0;
@@ -88,6 +90,8 @@ struct Reply
   /// Timeout: the other end has closed the connection in place of the answer (contract, 8.9), and a new one is opened at
   /// once.
   bool connection_closed = false;
+  /// Timeout or Damaged: a stop has ended the wait (contract, 8.4), so that it says nothing of the drive.
+  bool cut = false;
 };
 
 constexpr std::uint16_t ERROR_TIMEOUT = 0x0205;

@@ -18,11 +18,12 @@ Activities::Activities(BusState& bus)
   , polls(bus, turns, guard, stops, absences)
   , settings(bus, turns, services, absences)
   , probes(bus, turns, traffic, stops)
+  , waits(bus, stops, velocities, probes)
   , telnet(bus, absences)
   , port(bus, stops, absences, telnet)
   , checks(bus, traffic)
   , shutdown(bus, traffic, stops, services)
-  , reports(bus, traffic, stops, port)
+  , reports(bus, traffic, stops, waits, port)
 {
 }
 }  // namespace bus

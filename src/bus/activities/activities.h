@@ -11,6 +11,7 @@
 #include "bus/activities/shutdown.h"
 #include "bus/activities/trace_notes.h"
 #include "bus/activities/velocities.h"
+#include "bus/activities/waits.h"
 
 namespace inverter_bus
 {
@@ -35,6 +36,7 @@ struct Activities
   Polls polls;
   SettingsReads settings;
   Probes probes;
+  Waits waits;
   TelnetStops telnet;
   PortWatch port;
   LinkChecks checks;

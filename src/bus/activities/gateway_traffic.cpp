@@ -149,7 +149,7 @@ TimePoint GatewayTraffic::stopNotBefore(TimePoint now, const Inverter& inverter)
   {
     return TimePoint::max();
   }
-  const TimePoint next_frame = bus_.gateway.stopMayGoAt(now, inverter.index);
+  const TimePoint next_frame = std::max(bus_.gateway.stopMayGoAt(now, inverter.index), inverter.pauses.stopNotBefore());
   const auto danger = inverter.stop.pending() && inverter.stop.provisional()
                           ? bus_.gateway.motionUntil(now, inverter.index)
                           : std::nullopt;
@@ -177,7 +177,7 @@ std::vector<InverterView> GatewayTraffic::views(TimePoint now) const
 
 Duration GatewayTraffic::worstStop() const
 {
-  const Duration wire = bus_.budget.worst_stop + turns_.longestReplyDelay();
+  const Duration wire = bus_.budget.worst_stop_uncut + turns_.longestReplyDelay();
   if (!bus_.gateway.active())
   {
     return wire;

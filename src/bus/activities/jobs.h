@@ -61,6 +61,13 @@ public:
     return false;
   }
 
+  /// The frame that next() returned last reaches the EEPROM, or resets the drive: its reply is waited for whatever comes
+  /// (contract, 8.4).
+  virtual bool lasting() const
+  {
+    return false;
+  }
+
   /// The drive has been led into its setup area and not out of it again.
   virtual bool inSetup() const
   {
@@ -112,6 +119,7 @@ public:
   wire::Request next() override;
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
+  bool lasting() const override;
   /// A reset frame has left.
   bool clearsWords() const override;
   bool takeDeafening() override;
@@ -186,6 +194,7 @@ public:
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
   bool needsRest() const override;
+  bool lasting() const override;
   bool inSetup() const override;
   Aftermath aftermath() const override;
 
@@ -229,6 +238,7 @@ public:
   Progress done(const wire::Reply& reply) override;
   Progress lost(const wire::Reply& reply) override;
   bool needsRest() const override;
+  bool lasting() const override;
   Aftermath aftermath() const override;
 
 private:

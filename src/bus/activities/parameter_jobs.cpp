@@ -81,6 +81,13 @@ bool WriteParameterJob::needsRest() const
   return phase_ == Phase::Open && !opened_;
 }
 
+bool WriteParameterJob::lasting() const
+{
+  // What the manual does not say may reach it.
+  const bool ram = phase_ == Phase::Write && drive_.profile().writes == drive::Writes::Ram;
+  return phase_ != Phase::Busy && !ram;
+}
+
 bool WriteParameterJob::inSetup() const
 {
   return opened_ && !closed_;
@@ -249,6 +256,11 @@ Aftermath ConfigureBlockJob::aftermath() const
   Aftermath aftermath;
   aftermath.logged_as = "configure_block";
   return aftermath;
+}
+
+bool ConfigureBlockJob::lasting() const
+{
+  return true;
 }
 
 bool ConfigureBlockJob::needsRest() const

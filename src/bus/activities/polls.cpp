@@ -41,7 +41,8 @@ InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
     const wire::Request both =
         words.empty() ? current.request : inverter.drive.writeAndRead(inverter.config.node, words, block);
     // After a lost 17H that shape is barred for a while, the plain read is not.
-    current.request = line.mayAsk(both, now) ? both : current.request;
+    current.may_start = !words.empty() && line.mayAsk(both, now);
+    current.request = current.may_start ? both : current.request;
   }
   std::optional<drive::ReadBlock> variant = block;
   while (!resync && variant && !line.mayAsk(current.request, now))

@@ -23,6 +23,13 @@ Probes::Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stop
 {
 }
 
+std::size_t Probes::silentInverters() const
+{
+  return static_cast<std::size_t>(
+      std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
+                    [](const std::unique_ptr<Inverter>& inverter) { return inverter->link.silent(); }));
+}
+
 InFlight Probes::compose(const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
@@ -62,16 +69,22 @@ void Probes::ended(const InFlight& current, const wire::Reply& reply)
 Duration Probes::timeout(const Inverter& inverter, const LineView& line) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
-  const auto dead = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
-                                  [](const std::unique_ptr<Inverter>& other) { return other->link.silent(); });
+  const auto dead = silentInverters();
   // Staggered by index, so that no round has more than a few full ones.
   const std::size_t every = dead > 1 ? FULL_PROBE_EVERY_OF_MANY : FULL_PROBE_EVERY;
   if ((inverter.link.probes() + inverter.index) % every == every - 1)
   {
     return full;
   }
+  return shortTimeout(inverter, line);
+}
+
+Duration Probes::shortTimeout(const Inverter& inverter, const LineView& line) const
+{
+  const Duration full = seconds(inverter.config.response_timeout);
+  const auto dead = silentInverters();
   const wire::Request bare = request(inverter, 0, Duration::zero());
-  const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<long>(dead, 1)));
+  const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<std::size_t>(dead, 1)));
   const Duration needed = inverter.link.slowestReply() + inverter.link.slowestReply() / 2;
   const Duration least = std::max(needed, seconds(SHORTEST_PROBE_TIMEOUT_S));
   return std::min(full, std::max(least, share - line.costUnanswered(bare)));
@@ -101,7 +114,10 @@ void Probes::lateReply(TimePoint now, const wire::LateReply& late)
     {
       continue;
     }
-    if (late.delay && alone)
+    inverter->pauses.holdStop(now);
+    // No longer time-out would have caught one for which a stop has ended the wait.
+    const Duration waited = seconds(inverter->config.response_timeout) + inverter->settings.replyDelay();
+    if (late.delay && alone && *late.delay > waited)
     {
       inverter->link.cameLate(*late.delay);
       inverter->record.noteLate();

@@ -20,10 +20,13 @@ public:
   void ended(const InFlight& current, const wire::Reply& reply);
   /// How long a probe of this inverter may wait for the reply.
   Duration timeout(const Inverter& inverter, const LineView& line) const;
+  /// The same without those that wait for a drive that has become slow.
+  Duration shortTimeout(const Inverter& inverter, const LineView& line) const;
   /// A reply that came after its time-out: its station is alive.
   void lateReply(TimePoint now, const wire::LateReply& late);
 
 private:
+  std::size_t silentInverters() const;
   /// The next one is a loop-back, if the drive's profile has one.
   bool byLoopback(const Inverter& inverter) const;
   /// The question that shows whether an offline drive is back.

@@ -18,8 +18,9 @@ constexpr double BUS_STATUS_SHORTEST_S = 0.1;
 constexpr double BUS_STATUS_LONGEST_S = 0.9;
 }  // namespace
 
-Reports::Reports(BusState& bus, const GatewayTraffic& traffic, const Stops& stops, const PortWatch& port)
-  : bus_(bus), traffic_(traffic), stops_(stops), port_(port)
+Reports::Reports(BusState& bus, const GatewayTraffic& traffic, const Stops& stops, const Waits& waits,
+                 const PortWatch& port)
+  : bus_(bus), traffic_(traffic), stops_(stops), waits_(waits), port_(port)
 {
 }
 
@@ -156,7 +157,13 @@ void Reports::addValues(Report& report) const
   report.values.emplace_back("cycle time", util::fixedText(report.bus.cycle_time * 1e3, 1) + " ms");
   report.values.emplace_back("computed cycle", util::millisecondsText(bus_.budget.cycle));
   report.values.emplace_back("utilization", util::fixedText(report.bus.utilization * 100.0, 0) + " %");
-  report.values.emplace_back("worst stop latency, computed", util::millisecondsText(traffic_.worstStop()));
+  report.values.emplace_back("worst stop latency, computed",
+                             util::millisecondsText(bus_.gateway.active() ? traffic_.worstStop() : waits_.worstStop()));
+  if (!bus_.gateway.active())
+  {
+    report.values.emplace_back("worst stop latency behind a stop, a reset or an EEPROM write",
+                               util::millisecondsText(traffic_.worstStop()));
+  }
   report.values.emplace_back("worst stop latency, measured",
                              util::fixedText(report.bus.stop_latency_max * 1e3, 1) + " ms");
   if (!bus_.configuration.bus.gateway)

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "bus/activities/port_watch.h"
+#include "bus/activities/waits.h"
 #include "bus/link/adapter_watch.h"
 
 namespace inverter_bus
@@ -17,7 +18,7 @@ namespace bus
 class Reports
 {
 public:
-  Reports(BusState& bus, const GatewayTraffic& traffic, const Stops& stops, const PortWatch& port);
+  Reports(BusState& bus, const GatewayTraffic& traffic, const Stops& stops, const Waits& waits, const PortWatch& port);
 
   void publishSlowly(TimePoint now);
   Report report(TimePoint now) const;
@@ -32,6 +33,7 @@ private:
   BusState& bus_;
   const GatewayTraffic& traffic_;
   const Stops& stops_;
+  const Waits& waits_;
   const PortWatch& port_;
   AdapterWatch adapter_;
   TimePoint last_bus_status_;

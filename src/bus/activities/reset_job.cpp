@@ -50,6 +50,11 @@ wire::Request ResetJob::next()
   return drive_.command(station_, drive_.sequence("reset")->steps[step_]);
 }
 
+bool ResetJob::lasting() const
+{
+  return phase_ == Phase::Steps;
+}
+
 Job::Progress ResetJob::afterStep()
 {
   const auto& steps = drive_.sequence("reset")->steps;

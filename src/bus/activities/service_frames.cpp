@@ -50,6 +50,7 @@ std::optional<InFlight> Services::compose(TimePoint now, const Pick& pick)
   }
   InFlight current = exchangeFor(pick);
   current.request = inverter.prepared(running.job->next());
+  current.lasting = running.job->lasting();
   return current;
 }
 

@@ -18,6 +18,7 @@ InFlight SettingsReads::compose(const Pick& pick) const
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
+  current.lasting = inverter.settings.nextWrites() && inverter.drive.profile().writes != drive::Writes::Ram;
   current.request = inverter.prepared(inverter.settings.next());
   return current;
 }
@@ -41,6 +42,12 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
   {
     absences_.noteLost(reply.finished_at, inverter, reply.error_id);
   }
+}
+
+void SettingsReads::cut(const InFlight& current, const wire::Reply& reply)
+{
+  bus_.inverters[current.inverter]->settled(reply.finished_at, reply);
+  turns_.finish(current, reply, false);
 }
 
 void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)

@@ -18,6 +18,8 @@ public:
 
   InFlight compose(const Pick& pick) const;
   void ended(const InFlight& current, const wire::Reply& reply);
+  /// A stop has ended the wait for its reply (contract, 8.4): it goes again in its turn.
+  void cut(const InFlight& current, const wire::Reply& reply);
 
 private:
   void configureBlock(TimePoint now, Inverter& inverter);

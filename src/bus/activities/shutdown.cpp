@@ -91,7 +91,8 @@ Pick Shutdown::pick(TimePoint now)
   if (best == nullptr)
   {
     pick.what = Pick::What::Nothing;
-    pick.wake = bus_.gateway.active() ? std::max(now, std::min(deadline_, nextStop(now))) : now;
+    const TimePoint next = nextStop(now);
+    pick.wake = bus_.gateway.active() || next < deadline_ ? std::max(now, std::min(deadline_, next)) : now;
     return pick;
   }
   pick.inverter = best->index;

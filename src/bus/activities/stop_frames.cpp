@@ -170,7 +170,7 @@ void Stops::noteGatewayLatency(const InFlight& current, const wire::Reply& reply
 void Stops::noteLatency(Duration latency)
 {
   latency_max_ = std::max(latency_max_, latency);
-  const Duration in_gateway = traffic_.worstStop() - bus_.budget.worst_stop - turns_.longestReplyDelay();
+  const Duration in_gateway = traffic_.worstStop() - bus_.budget.worst_stop_uncut - turns_.longestReplyDelay();
   if (latency > turns_.longestExchange() + bus_.budget.stop_slack + in_gateway)
   {
     bus_.outbox.trace("stop took " + util::durationText(latency) + " to the wire");

@@ -114,6 +114,11 @@ void TraceNotes::ended(const InFlight& current, const wire::Reply& reply)
     return;
   }
   lost = current.resync ? lost : current.request.pdu;
+  if (reply.cut)
+  {
+    bus_.outbox.event(nameOf(current.inverter) + ": a stop has cut the wait for the reply to " + textOf(current));
+    return;
+  }
   const bool damaged = reply.outcome == wire::Outcome::Damaged;
   const bool gone = reply.outcome == wire::Outcome::PortLost;
   bus_.outbox.event(nameOf(current.inverter) + ": " +

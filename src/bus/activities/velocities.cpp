@@ -65,7 +65,13 @@ std::string textOf(LockReason reason, TimePoint now, const Inverter& inverter, c
 }  // namespace
 
 Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences)
-  : bus_(bus), turns_(turns), traffic_(traffic), stops_(stops), absences_(absences), frames_(bus.inverters.size(), 0)
+  : bus_(bus)
+  , turns_(turns)
+  , traffic_(traffic)
+  , stops_(stops)
+  , absences_(absences)
+  , frames_(bus.inverters.size(), 0)
+  , zero_at_(bus.inverters.size())
 {
 }
 
@@ -277,7 +283,14 @@ bool Velocities::applyZero(TimePoint now, Inverter& inverter, const Publisher& p
     return false;
   }
   inverter.movement.aim(target);
+  zero_at_[inverter.index] = now;
   return inverter.movement.active();
+}
+
+bool Velocities::zeroAskedSince(std::size_t index, TimePoint time) const
+{
+  const auto& target = bus_.inverters[index]->movement.target();
+  return zero_at_[index] >= time && target && target->zero && bus_.scheduler.velocityWaits(index);
 }
 
 bool Velocities::applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)

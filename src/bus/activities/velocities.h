@@ -29,6 +29,10 @@ public:
   std::optional<InFlight> compose(TimePoint now, const Pick& pick, const LineView& line);
   void sent(const InFlight& current);
   void ended(const InFlight& current, const wire::Reply& reply);
+  /// A stop has ended the wait for its reply (contract, 8.4): it goes again, and that is no try.
+  void cut(const InFlight& current, const wire::Reply& reply);
+  /// A velocity of 0 of this inverter came at \p time or later, and waits.
+  bool zeroAskedSince(std::size_t index, TimePoint time) const;
   /// The frame reaches the drive's EEPROM.
   bool wears(const InFlight& current) const;
 
@@ -55,6 +59,8 @@ private:
   Absences& absences_;
   /// By inverter: frames of the velocity unit under way, so that a stream of changes can't keep a unit going for ever.
   std::vector<unsigned> frames_;
+  /// By inverter: when the last velocity of 0 came that needs a frame.
+  std::vector<TimePoint> zero_at_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -58,6 +58,8 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick, con
       InFlight current = exchangeFor(of_member);
       current.write = *write;
       current.moves = inverter.movement.target() && !inverter.movement.target()->zero;
+      current.may_start = write->starts || (current.moves && !write->more.empty());
+      current.lasting = wears(current);
       current.request = inverter.prepared(write->request);
       return current;
     }
@@ -139,6 +141,22 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   {
     fail(current, reply, too_many);
   }
+}
+
+void Velocities::cut(const InFlight& current, const wire::Reply& reply)
+{
+  Inverter& inverter = *bus_.inverters[current.inverter];
+  const TimePoint now = reply.finished_at;
+  if (!current.resync)
+  {
+    inverter.movement.doubtful(current.write, now);
+  }
+  if (bus_.scheduler.velocityWaits(current.inverter))
+  {
+    bus_.scheduler.splitOff(current.pick.command, current.inverter, bus_.next_command++, now,
+                            inverter.movement.target() && inverter.movement.target()->zero);
+  }
+  turns_.finish(current, reply, !bus_.scheduler.members(current.pick.command).empty());
 }
 
 /// It is not sent again.

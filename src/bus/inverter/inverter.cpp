@@ -39,7 +39,7 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , motion(drive, config)
   , block_transfer(drive, config)
   , lost_writes(retries, offline_after)
-  , liveness(offline_after)
+  , liveness(offline_after, seconds(offline_after * (1 + retries) * config.response_timeout))
   , setting_repeats(retries)
 {
 }
@@ -60,7 +60,7 @@ bool Inverter::failed(TimePoint now, std::uint16_t error_id, bool write)
     return false;
   }
   link.failed(error_id);
-  if (liveness.lost(write))
+  if (liveness.lost(write) && !liveness.tooSoon(now))
   {
     goOffline(error_id);
   }

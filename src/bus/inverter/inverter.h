@@ -26,6 +26,7 @@
 #include "bus/inverter/service_state.h"
 #include "bus/inverter/stop_job.h"
 #include "bus/rules/interlock.h"
+#include "bus/rules/reply_times.h"
 #include "bus/rules/scheduler.h"
 
 namespace inverter_bus
@@ -61,6 +62,7 @@ public:
   LinkRecord record;
   LostWrites lost_writes;
   Liveness liveness;
+  ReplyTimes reply_times;
   Pauses pauses;
   /// Of the exchange at hand for its settings.
   Repeats setting_repeats;

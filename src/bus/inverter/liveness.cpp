@@ -32,14 +32,25 @@ std::string share(const std::string& what, unsigned part, unsigned whole)
 }
 }  // namespace
 
-Liveness::Liveness(int offline_after) : offline_after_(offline_after)
+Liveness::Liveness(int offline_after, Duration shortest_silence)
+  : offline_after_(offline_after), shortest_silence_(shortest_silence)
 {
+}
+
+void Liveness::waitedBriefly(TimePoint sent_at)
+{
+  row_.brief_since = row_.brief_since ? row_.brief_since : std::optional<TimePoint>(sent_at);
+}
+
+bool Liveness::tooSoon(TimePoint now) const
+{
+  return row_.brief_since && now - *row_.brief_since < shortest_silence_;
 }
 
 bool Liveness::lost(bool write)
 {
-  read_failed_ = read_failed_ || !write;
-  return ++failures_ >= offline_after_ && read_failed_;
+  row_.read_failed = row_.read_failed || !write;
+  return ++row_.failures >= offline_after_ && row_.read_failed;
 }
 
 bool Liveness::refused()
@@ -49,13 +60,12 @@ bool Liveness::refused()
 
 void Liveness::dataRead()
 {
-  failures_ = 0;
-  read_failed_ = false;
+  row_ = Row();
 }
 
 bool Liveness::needsRead() const
 {
-  return failures_ >= offline_after_ && !read_failed_;
+  return row_.failures >= offline_after_ && !row_.read_failed;
 }
 
 void Liveness::watchFrom(TimePoint time)

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "inverter_bus/wire/request.h"
@@ -19,13 +20,18 @@ namespace bus
 class Liveness
 {
 public:
-  /// \p offline_after failures in a row (bus parameter `offline_after`).
-  explicit Liveness(int offline_after);
+  /// \p offline_after failures in a row (bus parameter `offline_after`). \p shortest_silence the same in time, where replies
+  /// were not waited for in full.
+  explicit Liveness(int offline_after, Duration shortest_silence = Duration{ 0 });
 
   // --- failures in a row ----------------------------------------------------------------------------------------------
   /// An exchange was lost, after its repeats; true: so many in a row that the inverter is offline. Lost \p write of command
   /// words alone don't make it so (contract, 8.1): a read must be among them.
   bool lost(bool write);
+  /// One of them that was sent at \p sent_at has not had its full time (contract, 8.4).
+  void waitedBriefly(TimePoint sent_at);
+  /// Short waits are behind it that the row has become long: it is no silence yet for which an inverter goes offline.
+  bool tooSoon(TimePoint now) const;
   /// A read of the run words was answered by an exception; counts like a lost exchange.
   bool refused();
   /// A read brought data of the status: the row is over.
@@ -72,11 +78,19 @@ private:
     unsigned damaged = 0;
     unsigned refused = 0;
   };
+  /// Failures in a row.
+  struct Row
+  {
+    int failures = 0;
+    bool read_failed = false;
+    /// When the first request left whose reply was not waited for in full.
+    std::optional<TimePoint> brief_since;
+  };
   Reads since(Duration length) const;
 
   int offline_after_;
-  int failures_ = 0;
-  bool read_failed_ = false;
+  Duration shortest_silence_;
+  Row row_;
 
   TimePoint since_;
   TimePoint deaf_until_;

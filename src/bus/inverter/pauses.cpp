@@ -23,6 +23,16 @@ TimePoint Pauses::statusNotBefore() const
   return status_not_before_;
 }
 
+void Pauses::holdStop(TimePoint until)
+{
+  stop_not_before_ = until;
+}
+
+TimePoint Pauses::stopNotBefore() const
+{
+  return stop_not_before_;
+}
+
 void Pauses::holdSettings(TimePoint until)
 {
   settings_not_before_ = until;

@@ -18,6 +18,10 @@ public:
   void holdStatus(TimePoint until);
   TimePoint statusNotBefore() const;
 
+  /// No frame of its stop goes before \p until; a time in the past: it may go.
+  void holdStop(TimePoint until);
+  TimePoint stopNotBefore() const;
+
   /// Its settings are not asked for before \p until.
   void holdSettings(TimePoint until);
   /// An exchange for its settings has ended. \p failed: not at once again, since the status is worth more. \p refused_for:
@@ -33,6 +37,7 @@ public:
 
 private:
   TimePoint status_not_before_;
+  TimePoint stop_not_before_;
   TimePoint settings_not_before_;
   TimePoint connect_not_before_;
   TimePoint refused_not_before_;

@@ -57,11 +57,6 @@ std::string StopJob::sequenceFor(StopMode mode) const
   return drive_.sequence(own) != nullptr ? own : DECELERATION;
 }
 
-const drive::Sequence* StopJob::sequence() const
-{
-  return drive_.sequence(sequenceFor(mode_));
-}
-
 void StopJob::request(TimePoint now, StopMode mode)
 {
   if (pending_ && (mode == mode_ || mode == StopMode::Decelerate))
@@ -93,6 +88,11 @@ bool StopJob::pending() const
   return pending_;
 }
 
+bool StopJob::askedSince(TimePoint time) const
+{
+  return pending_ && !first_frame_left_ && attempts_ == 0 && requested_at_ >= time;
+}
+
 unsigned StopJob::attempts() const
 {
   return attempts_;
@@ -100,7 +100,7 @@ unsigned StopJob::attempts() const
 
 bool StopJob::written() const
 {
-  return step_ >= sequence()->steps.size();
+  return step_ >= drive_.sequence(sequenceFor(mode_))->steps.size();
 }
 
 bool StopJob::repeats() const
@@ -124,7 +124,7 @@ wire::Request StopJob::next() const
   {
     return drive_.read(station_, *drive_.runBlock());
   }
-  return drive_.command(station_, sequence()->steps[step_]);
+  return drive_.command(station_, drive_.sequence(sequenceFor(mode_))->steps[step_]);
 }
 
 std::optional<Duration> StopJob::sent(TimePoint now)

@@ -29,6 +29,8 @@ public:
   std::string sequenceFor(StopMode mode) const;
 
   bool pending() const;
+  /// It was asked for at \p time or later, and no frame of it has left yet.
+  bool askedSince(TimePoint time) const;
   unsigned attempts() const;
   /// Written and acknowledged: the read-back is next.
   bool written() const;
@@ -79,7 +81,6 @@ public:
   std::uint16_t lastError() const;
 
 private:
-  const drive::Sequence* sequence() const;
   Progress confirmByAcknowledgement();
   Progress fail(std::uint16_t error_id);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bus/rules/reply_times.h"
 #include "bus/rules/scheduler.h"
 #include "util/text.h"
 
@@ -133,7 +134,20 @@ Duration Budget::longestExchange() const
   return longest + line_.patience();
 }
 
-Duration Budget::worstStop() const
+Duration Budget::longestCutExchange() const
+{
+  Duration longest{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    for (const wire::Request& request : requests(index))
+    {
+      longest = std::max(longest, line_.cost(request, ReplyTimes().cutAfter(request.reply_delay, Duration{ 0 })));
+    }
+  }
+  return longest + line_.timing().briefPause();
+}
+
+Duration Budget::stopFrame() const
 {
   Duration frame{ 0 };
   for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
@@ -147,7 +161,17 @@ Duration Budget::worstStop() const
       frame = std::max(frame, line_.costUnanswered(request));
     }
   }
-  return longestExchange() + frame;
+  return frame;
+}
+
+Duration Budget::worstStop() const
+{
+  return configuration_.bus.modbus_tcp ? worstStopUncut() : longestCutExchange() + stopFrame();
+}
+
+Duration Budget::worstStopUncut() const
+{
+  return longestExchange() + stopFrame();
 }
 
 Duration Budget::velocityUnit(std::size_t index) const
@@ -211,6 +235,7 @@ Budget::Figures Budget::figures() const
   Figures figures;
   figures.cycle = cycle();
   figures.worst_stop = worstStop();
+  figures.worst_stop_uncut = worstStopUncut();
   figures.longest_exchange = longestExchange();
   figures.deadline_margin = deadlineMargin();
   figures.longest_pause = line_.patience();
@@ -219,12 +244,14 @@ Budget::Figures Budget::figures() const
   return figures;
 }
 
-std::string Budget::behindGateway() const
+/// What comes on top of the worst stop latency, and when.
+std::string Budget::behindOthers() const
 {
   return configuration_.bus.modbus_tcp
              ? " and up to " + util::millisecondsText(seconds(configuration_.bus.gateway_timeout)) +
                    " for each inverter that does not answer"
-             : "";
+             : ", " + util::millisecondsText(worstStopUncut()) +
+                   " behind another stop, a reset or a write to an EEPROM that nobody answers";
 }
 
 Duration Budget::longestReturn(Duration block, std::size_t offline)
@@ -253,7 +280,7 @@ std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
   findings.push_back({ Level::Ok, "bus budget: status cycle " + util::millisecondsText(cycle()) +
-                                      ", worst stop latency " + util::millisecondsText(worstStop()) + behindGateway() +
+                                      ", worst stop latency " + util::millisecondsText(worstStop()) + behindOthers() +
                                       " (plus the ramp), longest gap between two frames to "
                                       "an inverter " +
                                       util::millisecondsText(longestGap()) });

@@ -24,6 +24,8 @@ public:
   {
     Duration cycle{ 0 };
     Duration worst_stop{ 0 };
+    /// Behind an exchange that no stop cuts.
+    Duration worst_stop_uncut{ 0 };
     Duration longest_exchange{ 0 };
     Duration deadline_margin{ 0 };
     /// Longest pause inside a reply that is waited out.
@@ -37,8 +39,12 @@ public:
 
   /// One status cycle of all inverters without commands, slow values included in proportion.
   Duration cycle() const;
-  /// Acceptance of a stop to the last bit of its frame: the longest exchange in flight, unanswered, then the frame.
+  /// Acceptance of a stop to the last bit of its frame: the exchange in flight, unanswered until the stop cuts it (contract,
+  /// 8.4), then the frame. Drives that take longer than 5 ms to begin a reply are waited for longer: Waits has that.
   Duration worstStop() const;
+  /// The same behind one that no stop cuts: another stop, a reset, a write to the EEPROM, and whatever a gateway
+  /// has (contract, 8.8).
+  Duration worstStopUncut() const;
   /// Longest time between two frames to the same inverter: every read of the cycle alternates with a velocity of one
   /// inverter, and one exchange is lost.
   Duration longestGap() const;
@@ -47,6 +53,8 @@ public:
   Duration deadlineMargin() const;
   /// The longest exchange in use: its reply begins when its time is almost up, and has a pause in it.
   Duration longestExchange() const;
+  /// The longest one that a stop cuts as soon as it may: its reply begins at the last moment, and has a pause in it.
+  Duration longestCutExchange() const;
   Figures figures() const;
 
   /// Lines for the log: the figures, and WARN where a time-out can't be met.
@@ -61,11 +69,12 @@ public:
   static Duration longestReturn(Duration block, std::size_t offline);
 
 private:
+  Duration stopFrame() const;
   Duration readCost(std::size_t index, const drive::ReadBlock& block) const;
   Duration refreshCost(std::size_t index) const;
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
-  std::string behindGateway() const;
+  std::string behindOthers() const;
   std::optional<Finding> returnBehindGateway() const;
 
   const Configuration& configuration_;

@@ -17,6 +17,8 @@ namespace
 /// pause that is allowed for if that is longer).
 constexpr double REPLY_SLACK_CHARACTERS = 16.0;
 constexpr std::chrono::milliseconds REPLY_SLACK{ 30 };
+/// How long a stop may stay unnoticed while a wait could be cut.
+constexpr std::chrono::milliseconds LOOK_PERIOD{ 1 };
 }  // namespace
 
 Line::Line(Port& port, Protocol& protocol, util::Clock& clock, LineTiming timing)
@@ -80,9 +82,9 @@ TimePoint Line::readyAt() const
   return ready_at_;
 }
 
-bool Line::settle()
+bool Line::settle(const GiveWay& give_way)
 {
-  return settle(Duration{ 0 });
+  return settleFor(Duration{ 0 }, give_way);
 }
 
 bool Line::mayAsk(const Request& request) const
@@ -103,13 +105,13 @@ TimePoint Line::mayAskAt(const Request& request, TimePoint now) const
   return gateway_ ? gateway_->mayAskAt(shape, now) : std::max(bars_.barredUntil(shape), now);
 }
 
-Reply Line::exchange(const Request& request, Duration turnaround_after)
+Reply Line::exchange(const Request& request, Duration turnaround_after, const GiveWay& give_way)
 {
   flushIdle();
   Reply reply;
   // What ends before it has begun took no time.
   reply.sent_at = clock_.now();
-  if (request.quiet_before > Duration{ 0 } && !settle(request.quiet_before))
+  if (request.quiet_before > Duration{ 0 } && !settleFor(request.quiet_before, give_way))
   {
     lose(reply);
     return reply;
@@ -122,7 +124,7 @@ Reply Line::exchange(const Request& request, Duration turnaround_after)
     return reply;
   }
   expectEcho(request, frame);
-  Waiting waiting = startWaiting(request, reply.sent_at);
+  Waiting waiting = startWaiting(request, reply.sent_at, give_way);
   waiting.shape = protocol_.shape(request);
   noteAsked(waiting, reply);
   last_use_at_ = waiting.request_end;
@@ -243,9 +245,9 @@ void Line::expectEcho(const Request& request, const Bytes& frame)
   echo_.expect(frame, reply_may_equal);
 }
 
-Line::Waiting Line::startWaiting(const Request& request, TimePoint sent_at)
+Line::Waiting Line::startWaiting(const Request& request, TimePoint sent_at, const GiveWay& give_way)
 {
-  Waiting waiting(request);
+  Waiting waiting(request, give_way);
   waiting.sent_at = sent_at;
   // The UART sends on after the write has returned, unless the write had to wait for it.
   const auto request_length = static_cast<double>(protocol_.requestLength(request));
@@ -268,7 +270,9 @@ void Line::waitForReply(Waiting& waiting, Reply& reply)
   ReceiveResult result = ReceiveResult::Data;
   while (result == ReceiveResult::Data)
   {
-    result = receive(waitUntil(waiting));
+    const bool nothing_came = buffer_.empty() && damaged_.empty();
+    const TimePoint cut_from = waiting.cutFrom(nothing_came ? TimePoint() : last_byte_at_);
+    result = receiveUnlessCut(waitUntil(waiting), cut_from, waiting.give_way, waiting.cut);
     if (consume(waiting, reply))
     {
       return;
@@ -301,6 +305,26 @@ TimePoint Line::waitUntil(const Waiting& waiting) const
   const bool may_be_a_frame = reply_was_here || !buffer_.empty();
   const TimePoint at_least = reply_was_here ? rest : waiting.first_byte_deadline;
   return std::min(may_be_a_frame ? std::max(at_least, rest) : at_least, waiting.last_deadline);
+}
+
+/// As receive(), but from \p from on \p cut becomes true, with Silence, as soon as a stop waits.
+ReceiveResult Line::receiveUnlessCut(TimePoint deadline, TimePoint from, const GiveWay& give_way, bool& cut)
+{
+  // In short turns: so a stop needs no way to wake whatever the port waits for. Who answers in time is not looked at.
+  for (TimePoint look = from; give_way.stop_waits && look < deadline; look = clock_.now() + LOOK_PERIOD)
+  {
+    const ReceiveResult result = receive(look);
+    if (result != ReceiveResult::Silence)
+    {
+      return result;
+    }
+    if (give_way.stop_waits())
+    {
+      cut = true;
+      return ReceiveResult::Silence;
+    }
+  }
+  return receive(deadline);
 }
 
 ReceiveResult Line::receive(TimePoint deadline)
@@ -344,7 +368,9 @@ void Line::giveUp(Waiting& waiting, Reply& reply)
   }
   const bool damaged = waiting.foreign || !damaged_.empty();
   reportDamaged();
-  ++(damaged ? counters_.corrupt_replies : counters_.timeouts);
+  reply.cut = waiting.cut;
+  counters_.corrupt_replies += damaged && !reply.cut ? 1 : 0;
+  counters_.timeouts += damaged || reply.cut ? 0 : 1;
   reply.outcome = damaged ? Outcome::Damaged : Outcome::Timeout;
   reply.error_id = damaged ? ERROR_DAMAGED : ERROR_TIMEOUT;
   if (gateway_)

@@ -39,7 +39,7 @@ Outcome outcomeOf(const Parsed& answer, std::uint8_t gateway_code)
 }  // namespace
 
 /// \p quiet silence to wait for beyond readyAt().
-bool Line::settle(Duration quiet)
+bool Line::settleFor(Duration quiet, const GiveWay& give_way)
 {
   if (!port_.isOpen())
   {
@@ -54,7 +54,10 @@ bool Line::settle(Duration quiet)
     // The rest of a late reply that an adapter delivers in pieces must not run into the next exchange.
     const bool half_a_frame = buffer_.size() >= LIKELY_FRAME && !isSurplus();
     const TimePoint rest = half_a_frame ? last_byte_at_ + patience() : ready_at_;
-    result = receive(std::min(std::max(quiet_at(), rest), give_up));
+    const TimePoint brief = half_a_frame ? last_byte_at_ + give_way.pause : ready_at_;
+    bool cut = false;
+    result =
+        receiveUnlessCut(std::min(std::max(quiet_at(), rest), give_up), std::max(quiet_at(), brief), give_way, cut);
     consumeIdle();
     result = result == ReceiveResult::Data && clock_.now() >= give_up ? ReceiveResult::Silence : result;
   }
@@ -76,10 +79,11 @@ bool Line::isSurplus() const
 
 bool Line::consume(Waiting& waiting, Reply& reply)
 {
-  stripEcho();
+  counters_.echoes += echo_.strip(buffer_, damaged_) ? 1 : 0;
   if (!waiting.first_byte_at && !buffer_.empty())
   {
     waiting.first_byte_at = last_byte_at_ - timing_.characters(static_cast<double>(buffer_.size()));
+    waiting.heard_at = last_byte_at_;
   }
   waiting.begun = false;
   std::size_t before = 0;
@@ -162,6 +166,7 @@ void Line::accept(const Waiting& waiting, const Parsed& parsed, const Bytes& raw
   reply.error_id = reply.gateway_code != 0 ? ERROR_TIMEOUT : parsed.error_id;
   reply.finished_at = last_byte_at_;
   reply.turnaround = std::max(Duration{ 0 }, *waiting.first_byte_at - waiting.request_end);
+  reply.heard_after = std::max(Duration{ 0 }, Duration(waiting.heard_at - waiting.request_end));
 }
 
 void Line::noteAnswer(Outcome outcome, const Parsed& parsed, const Bytes& raw)
@@ -184,7 +189,7 @@ void Line::noteAnswer(Outcome outcome, const Parsed& parsed, const Bytes& raw)
 
 void Line::consumeIdle()
 {
-  stripEcho();
+  counters_.echoes += echo_.strip(buffer_, damaged_) ? 1 : 0;
   std::size_t before = 0;
   while (!buffer_.empty() && buffer_.size() != before && !echo_.holds(buffer_))
   {
@@ -244,11 +249,6 @@ GatewayRecord::Answer Line::answerOf(const Parsed& parsed) const
   answer.shape = protocol_.shapeOfReply(parsed);
   answer.exception = parsed.error_id != 0;
   return answer;
-}
-
-void Line::stripEcho()
-{
-  counters_.echoes += echo_.strip(buffer_, damaged_) ? 1 : 0;
 }
 
 /// True if \p parsed is the late reply to a lost request, false if nobody here has asked for it.

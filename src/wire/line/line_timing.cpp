@@ -19,6 +19,8 @@ constexpr double FAST_CHARACTER_S = 0.0005;
 constexpr std::chrono::milliseconds ADAPTER_PAUSE{ 25 };
 /// The highest trigger level of a 16550A's FIFO, 14, and the 4 characters of silence after which it tells of less.
 constexpr double FIFO_CHARACTERS = 18.0;
+/// Contract, 8.4.
+constexpr std::chrono::milliseconds BRIEF_PAUSE{ 5 };
 }  // namespace
 
 LineTiming::LineTiming(unsigned baud_rate, unsigned bits_per_character)
@@ -47,6 +49,11 @@ Duration LineTiming::gap(double gap_characters) const
 Duration LineTiming::patience(double gap_characters) const
 {
   return std::max(gap(gap_characters), pause_);
+}
+
+Duration LineTiming::briefPause() const
+{
+  return std::max<Duration>(BRIEF_PAUSE, characters(FIFO_CHARACTERS));
 }
 }  // namespace wire
 }  // namespace inverter_bus

@@ -47,6 +47,19 @@ TEST(Liveness, soManyLostExchangesInARowMakeAnInverterOffline)
   EXPECT_TRUE(liveness.lost(false));
 }
 
+TEST(Liveness, shortWaitsTakeNobodyOfflineSoonerThanFullOnes)
+{
+  Liveness liveness(2, Ms(400));
+  liveness.waitedBriefly(at(100));
+  EXPECT_FALSE(liveness.lost(false));
+  liveness.waitedBriefly(at(150));
+  EXPECT_TRUE(liveness.lost(false));
+  EXPECT_TRUE(liveness.tooSoon(at(499)));
+  EXPECT_FALSE(liveness.tooSoon(at(500)));
+  liveness.dataRead();
+  EXPECT_FALSE(liveness.tooSoon(at(110))) << "no wait of this row was short";
+}
+
 TEST(Liveness, refusedRunWordsCountLikeLostExchanges)
 {
   Liveness liveness(2);

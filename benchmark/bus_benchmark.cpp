@@ -1,168 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 
-// Figures of the driver on the simulated bus: pseudo-terminal, wire time of a real line, real libmodbus, in one process.
-// What is measured is measured at the simulated line, not by the driver's own counters.
+// Figures of the driver in real time: simulated drives on a pseudo-terminal with the wire time of a real line, the driver with its
+// real serial port and threads on the other side, in one process and thus on one clock. What is measured is measured at the
+// simulated line, not by the driver's own counters. Prints one JSON object with the raw samples.
 //
-//   bus_benchmark --profiles config/drives [--inverters 5] [--baud 19200] [--seconds 10] [--calls 1000]
+//   bus_benchmark wire     [--baud 19200] [--calls 300]         the wire's own error, and what a master sees of it
+//   bus_benchmark stops    [--inverters 31] [--dead 3] [--calls 1000]
+//   bus_benchmark commands [--inverters 31] [--load idle|full] [--calls 300]
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <termios.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <atomic>
 #include <boost/program_options.hpp>
 #include <condition_variable>
-#include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <random>
-#include <sstream>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
-#include "inverter_bus/bus/bus.h"
-#include "inverter_bus/simulation/bus_runner.h"
+#include "benchmark/figures.h"
+#include "benchmark/live_bus.h"
+#include "simulation/modbus/modbus_frame.h"
 
 namespace
 {
 using namespace inverter_bus;
+using namespace inverter_bus::benchmark;
 namespace po = boost::program_options;
+using Clock = std::chrono::steady_clock;
 
 struct Options
 {
+  std::string what;
   std::string profiles;
-  unsigned inverters = 5;
-  unsigned baud = 19200;
-  double seconds = 10.0;
+  std::string load = "full";
+  Scene scene;
+  unsigned dead = 0;
   unsigned calls = 1000;
-};
-
-class Silent : public bus::Observer
-{
-public:
-  void inverterStatus(const bus::InverterStatus&) override
-  {
-  }
-  void busStatus(const bus::BusStatus&) override
-  {
-  }
-  void log(const bus::Finding& finding) override
-  {
-    if (finding.level != bus::Level::Ok)
-    {
-      std::cerr << finding.text << std::endl;
-    }
-  }
-  void trace(bus::TraceDump) override
-  {
-  }
-};
-
-/// The first bytes of the master's frames, as the simulated line saw them.
-class FrameLog
-{
-public:
-  void add(const simulation::FrameRecord& frame)
-  {
-    if (frame.source != simulation::FrameRecord::Source::Master)
-    {
-      return;
-    }
-    const std::lock_guard<std::mutex> guard(mutex_);
-    frames_.push_back(frame);
-    added_.notify_all();
-  }
-
-  void clear()
-  {
-    const std::lock_guard<std::mutex> guard(mutex_);
-    frames_.clear();
-  }
-
-  /// Start times of the frames that begin with \p head.
-  std::vector<TimePoint> starts(const simulation::Bytes& head) const
-  {
-    const std::lock_guard<std::mutex> guard(mutex_);
-    std::vector<TimePoint> times;
-    for (const simulation::FrameRecord& frame : frames_)
-    {
-      if (frame.bytes.size() >= head.size() && std::equal(head.begin(), head.end(), frame.bytes.begin()))
-      {
-        times.push_back(frame.time);
-      }
-    }
-    return times;
-  }
-
-private:
-  mutable std::mutex mutex_;
-  std::condition_variable added_;
-  std::vector<simulation::FrameRecord> frames_;
-};
-
-std::string scanList(const Options& options, const std::string& link)
-{
-  std::ostringstream yaml;
-  yaml << "port: " << link << "\nbaud_rate: " << options.baud << "\ndefaults: {drive: omron_mx2, command_timeout: 0}\n"
-       << "scan_list:\n";
-  for (unsigned node = 1; node <= options.inverters; ++node)
-  {
-    yaml << "  - {name: belt_" << node << ", node: " << node << "}\n";
-  }
-  return yaml.str();
-}
-
-double median(std::vector<double> values)
-{
-  if (values.empty())
-  {
-    return 0.0;
-  }
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-/// A bus of both sides, running.
-class Bench
-{
-public:
-  explicit Bench(const Options& options) : link_("/tmp/inverter_bus_benchmark_" + std::to_string(::getpid()))
-  {
-    const std::string yaml = scanList(options, link_);
-    const std::string path = link_ + ".yaml";
-    std::ofstream(path) << yaml;
-    bus::Configuration configuration = bus::readConfiguration(bus::readYamlFile(path), path, options.profiles);
-    std::remove(path.c_str());
-    simulation::LineOptions line;
-    line.delivery_step = std::chrono::microseconds(500);
-    simulated_ = std::make_unique<simulation::SimulatedBus>(simulation::busConfigFromText(yaml), line,
-                                                            std::chrono::steady_clock::now());
-    simulated_->setObserver([this](const simulation::FrameRecord& frame) { frames.add(frame); });
-    runner_ = std::make_unique<simulation::BusRunner>(*simulated_, link_);
-    player_ = std::thread([this] { runner_->run(); });
-    auto port = wire::makeSerialPort(configuration.bus.serial);
-    driver = std::make_unique<bus::Bus>(std::move(configuration), std::move(port), observer_);
-    driver->start();
-  }
-
-  ~Bench()
-  {
-    driver->shutdown();
-    runner_->stop();
-    player_.join();
-  }
-
-  FrameLog frames;
-  std::unique_ptr<bus::Bus> driver;
-
-private:
-  std::string link_;
-  Silent observer_;
-  std::unique_ptr<simulation::SimulatedBus> simulated_;
-  std::unique_ptr<simulation::BusRunner> runner_;
-  std::thread player_;
+  double warm_up = 3.0;
+  Host host;
 };
 
 void pass(double time)
@@ -170,164 +55,240 @@ void pass(double time)
   std::this_thread::sleep_for(std::chrono::duration<double>(time));
 }
 
-/// Two reads per inverter: 24 coils (8 + 8 characters) and 4 registers (8 + 13), each with a gap of 3.5 characters before
-/// the request and before the reply; 10 bits a character. This is the wire alone: a drive that answers without thinking.
-double wireLimit(const Options& options)
-{
-  const double character = 10.0 / options.baud;
-  const double gap = options.baud > 19200 ? 0.00175 : 3.5 * character;
-  return options.inverters * ((8 + 8 + 8 + 13) * character + 4 * gap);
-}
-
-void measureCycle(Bench& bench, const Options& options)
-{
-  pass(3.0);  // start-up: settings of the drives are read
-  bench.frames.clear();
-  pass(options.seconds);
-  const std::vector<TimePoint> starts = bench.frames.starts({ 1, 0x01 });
-  std::vector<double> cycles;
-  for (std::size_t index = 1; index < starts.size(); ++index)
-  {
-    cycles.push_back(toSeconds(starts[index] - starts[index - 1]));
-  }
-  const bus::BusStatus status = bench.driver->report().bus;
-  const double limit = wireLimit(options);
-  // Turnaround of the simulated drives beyond the gap, twice per inverter.
-  const double drives = options.inverters * 2 * 0.002;
-  std::printf("refresh cycle of %u MX2 at %u baud 8N1 over %.0f s (%zu cycles)\n", options.inverters, options.baud,
-              options.seconds, cycles.size());
-  std::printf("  wire limit of the two reads per inverter       %8.1f ms\n", limit * 1e3);
-  std::printf("  with the drives' turnaround of 2 ms             %8.1f ms\n", (limit + drives) * 1e3);
-  std::printf("  measured, slow values included (median)         %8.1f ms   ratio to the wire limit %.2f\n",
-              median(cycles) * 1e3, median(cycles) / limit);
-  std::printf("  shortest (a cycle without slow values)          %8.1f ms   ratio to the wire limit %.2f\n",
-              *std::min_element(cycles.begin(), cycles.end()) * 1e3,
-              *std::min_element(cycles.begin(), cycles.end()) / limit);
-  std::printf("  bus_status: utilization %.2f, efficiency %.2f, time-outs %llu\n", status.utilization,
-              status.efficiency, static_cast<unsigned long long>(status.counters.timeouts));
-}
-
-/// Keeps the queues full: parameter reads and changing velocities of every inverter.
-class Load
+/// The plainest master there is: writes, and waits for so many bytes.
+class BareMaster
 {
 public:
-  explicit Load(Bench& bench, unsigned inverters) : bench_(bench), inverters_(inverters)
+  BareMaster(const std::string& path, unsigned baud) : descriptor_(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK))
   {
-    thread_ = std::thread([this] { run(); });
+    if (descriptor_ < 0)
+    {
+      throw std::runtime_error("the simulated port can't be opened");
+    }
+    termios settings{};
+    ::tcgetattr(descriptor_, &settings);
+    ::cfmakeraw(&settings);
+    ::cfsetspeed(&settings, rateOf(baud));
+    ::tcsetattr(descriptor_, TCSANOW, &settings);
   }
 
-  ~Load()
+  ~BareMaster()
   {
-    stop_ = true;
-    thread_.join();
+    ::close(descriptor_);
+  }
+
+  BareMaster(const BareMaster&) = delete;
+  BareMaster& operator=(const BareMaster&) = delete;
+
+  /// @return when the last of so many bytes had been read
+  TimePoint exchange(const simulation::Bytes& request, std::size_t reply)
+  {
+    const ssize_t written = ::write(descriptor_, request.data(), request.size());
+    std::size_t heard = written < 0 ? reply : 0;
+    while (heard < reply)
+    {
+      pollfd input{ descriptor_, POLLIN, 0 };
+      if (::poll(&input, 1, 1000) <= 0)
+      {
+        throw std::runtime_error("the simulated drive did not answer");
+      }
+      char buffer[256];
+      const ssize_t size = ::read(descriptor_, buffer, sizeof buffer);
+      heard += size > 0 ? static_cast<std::size_t>(size) : 0;
+    }
+    return Clock::now();
   }
 
 private:
-  void run()
+  static speed_t rateOf(unsigned baud)
   {
-    unsigned round = 0;
-    while (!stop_)
+    switch (baud)
     {
-      for (std::size_t index = 0; index < inverters_; ++index)
-      {
-        if (waiting_ < 20)
-        {
-          ++waiting_;
-          bench_.driver->readParameter(index, "F002", [this](const bus::Answer&) { --waiting_; });
-        }
-        bus::VelocityCommand command;
-        command.targets = { { index, 10.0 + (round % 100) * 0.1 } };
-        command.publisher.name = "/benchmark";
-        bench_.driver->command(command);
-      }
-      ++round;
-      pass(0.02);
+      case 9600:
+        return B9600;
+      case 19200:
+        return B19200;
+      case 115200:
+        return B115200;
+      default:
+        throw std::runtime_error("--baud: " + std::to_string(baud) + " (allowed: 9600, 19200, 115200)");
     }
   }
 
-  Bench& bench_;
-  unsigned inverters_;
-  std::atomic<bool> stop_{ false };
-  std::atomic<int> waiting_{ 0 };
-  std::thread thread_;
+  int descriptor_;
 };
 
-/// One stop call: from the call to the first byte of its frame on the line, and to its confirmed answer.
-std::pair<double, double> measureOneStop(Bench& bench, std::size_t index)
+/// From a request to its whole reply, against the time that the wire and the drive take by their own arithmetic.
+void playWire(const Options& options)
+{
+  prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  LiveWire live(options.scene, options.host);
+  BareMaster master(live.path(), options.scene.baud);
+  const double character = 10.0 / options.scene.baud;
+  const simulation::Bytes request = simulation::withModbusCrc({ 1, 0x03, 0x10, 0, 0, 4 });
+  const double ideal = (8 + 13) * character + std::max(silence(options.scene.baud), options.scene.reply_delay);
+  std::vector<double> seen;
+  std::vector<double> stamped;
+  pass(0.1);
+  for (unsigned call = 0; call < options.calls; ++call)
+  {
+    live.frames.clear();
+    const TimePoint begin = Clock::now();
+    seen.push_back(toSeconds(master.exchange(request, 13) - begin) - ideal);
+    const auto stamp = live.frames.first({ 1, 0x03 }, begin);
+    stamped.push_back(stamp ? toSeconds(*stamp - begin) : -1.0);
+    pass(2 * silence(options.scene.baud));
+  }
+  const simulation::Punctuality punctuality = live.end();
+  Json json;
+  json.number("character", character).number("mean", punctuality.mean()).number("latest", punctuality.latest());
+  json.number("instants", static_cast<double>(punctuality.count()));
+  json.numbers("seen", seen).numbers("stamped", stamped);
+  std::cout << json.str() << std::endl;
+}
+
+/// One stop call: [s] from the call to the first byte of its frame on the line, and to its confirmed answer.
+std::pair<double, double> stopOnce(LiveBus& live, std::size_t index)
 {
   std::mutex mutex;
   std::condition_variable answered;
   bool done = false;
-  bench.frames.clear();
-  const TimePoint call = std::chrono::steady_clock::now();
-  bench.driver->stop(index, 0, [&](const bus::Answer&) {
+  live.wire.frames.clear();
+  const TimePoint call = Clock::now();
+  live.driver->stop(index, 0, [&](const bus::Answer&) {
     const std::lock_guard<std::mutex> guard(mutex);
     done = true;
     answered.notify_all();
   });
   std::unique_lock<std::mutex> lock(mutex);
   answered.wait(lock, [&] { return done; });
-  const double confirmed = toSeconds(std::chrono::steady_clock::now() - call);
-  const auto station = static_cast<std::uint8_t>(index + 1);
-  for (const TimePoint start : bench.frames.starts({ station, 0x05, 0x00, 0x00, 0x00, 0x00 }))
-  {
-    if (start >= call)
-    {
-      return { toSeconds(start - call), confirmed };
-    }
-  }
-  return { -1.0, confirmed };
+  const double confirmed = toSeconds(Clock::now() - call);
+  const auto first = live.wire.frames.first({ static_cast<std::uint8_t>(index + 1), 0x05, 0, 0, 0, 0 }, call);
+  return { first ? toSeconds(*first - call) : -1.0, confirmed };
 }
 
-void measureStops(Bench& bench, const Options& options)
+void playStops(const Options& options)
 {
-  std::vector<double> first_byte;
-  std::vector<double> confirmed;
-  unsigned missing = 0;
+  LiveBus live(options.scene, options.profiles, options.host);
+  pass(options.warm_up);
+  for (unsigned number = 0; number < options.dead; ++number)
+  {
+    live.wire.world("belt_" + std::to_string(options.scene.inverters - number) + " offline");
+  }
+  const unsigned alive = options.scene.inverters - options.dead;
+  Load load(live, alive, 1);
+  pass(options.dead > 0 ? options.warm_up : 1.0);
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> pause(0.0, 0.03);
-  const Load load(bench, options.inverters);
-  pass(1.0);
+  std::uniform_real_distribution<double> pause(0.0, 0.05);
+  std::vector<double> delays;
+  std::vector<double> confirmed;
+  WakeUps wake_ups;
   for (unsigned call = 0; call < options.calls; ++call)
   {
-    const auto delays = measureOneStop(bench, call % options.inverters);
-    missing += delays.first < 0.0 ? 1 : 0;
-    first_byte.push_back(delays.first);
-    confirmed.push_back(delays.second);
+    const std::size_t index = random() % alive;
     pass(pause(random));
+    load.hold(index);
+    const auto both = stopOnce(live, index);
+    load.restart(index);
+    delays.push_back(both.first);
+    confirmed.push_back(both.second);
   }
-  const double character = 10.0 / options.baud;
-  const double gap = options.baud > 19200 ? 0.00175 : 3.5 * character;
-  // The longest exchange of an MX2 here: 10 slow registers (8 + 25 characters) and 2 ms of the drive's own.
-  const double longest = (8 + 25) * character + 2 * gap + 0.002;
-  std::printf(
-      "stop call to the first byte of its frame, %u calls under full load (20 parameter reads waiting, all "
-      "velocities changing)\n",
-      options.calls);
-  std::printf("  median %.1f ms, maximum %.1f ms; longest exchange in flight + gap %.1f ms\n", median(first_byte) * 1e3,
-              *std::max_element(first_byte.begin(), first_byte.end()) * 1e3, (longest + gap) * 1e3);
-  std::printf("  to the confirmed answer: median %.1f ms, maximum %.1f ms; calls without a frame: %u\n",
-              median(confirmed) * 1e3, *std::max_element(confirmed.begin(), confirmed.end()) * 1e3, missing);
+  Json json;
+  json.numbers("stops", delays).numbers("confirmed", confirmed).numbers("wake_ups", wake_ups.end());
+  std::cout << json.str() << std::endl;
+}
+
+/// The first frame since then that begins so; nothing: none within about \p limit milliseconds.
+std::optional<TimePoint> waitFor(const FrameLog& frames, const simulation::Bytes& head, TimePoint since, int limit)
+{
+  std::optional<TimePoint> first;
+  for (int wait = 0; wait < limit && !first; ++wait)
+  {
+    pass(0.001);
+    first = frames.first(head, since);
+  }
+  return first;
+}
+
+/// [s] from a velocity message to the first byte of a frame that writes it.
+void playCommands(const Options& options)
+{
+  LiveBus live(options.scene, options.profiles, options.host);
+  pass(options.warm_up);
+  const bool full = options.load == "full";
+  Load load(live, options.scene.inverters, full ? 20 : 0);
+  pass(2.0);
+  if (!full)
+  {
+    for (std::size_t index = 0; index < options.scene.inverters; ++index)
+    {
+      load.hold(index);
+    }
+  }
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> pause(0.05, 0.1);
+  std::vector<double> delays;
+  WakeUps wake_ups;
+  for (unsigned call = 0; call < options.calls; ++call)
+  {
+    const std::size_t index = random() % options.scene.inverters;
+    const simulation::Bytes head{ static_cast<std::uint8_t>(index + 1), 0x10, 0, 0 };
+    live.wire.frames.clear();
+    const TimePoint held = Clock::now();
+    load.hold(index);
+    pass(pause(random));
+    if (full)
+    {
+      // The one before it is written first, or the new one would only take its place in the queue.
+      waitFor(live.wire.frames, head, held, 2000);
+    }
+    live.wire.frames.clear();
+    bus::VelocityCommand command;
+    command.targets = { { index, 30.0 + 0.05 * (call % 400) } };
+    command.publisher.name = "/benchmark";
+    const TimePoint begin = Clock::now();
+    live.driver->command(command);
+    const auto first = waitFor(live.wire.frames, head, begin, 10000);
+    delays.push_back(first ? toSeconds(*first - begin) : -1.0);
+    if (full)
+    {
+      load.resume(index);
+    }
+  }
+  std::cout << Json().numbers("commands", delays).numbers("wake_ups", wake_ups.end()).str() << std::endl;
 }
 
 Options readOptions(int argc, char** argv)
 {
   Options options;
-  po::options_description description("bus_benchmark");
-  description.add_options()("help", "this text")(
-      "profiles", po::value(&options.profiles)->default_value("config/drives"), "directory of the drive profiles")(
-      "inverters", po::value(&options.inverters)->default_value(5), "MX2 on the bus")(
-      "baud", po::value(&options.baud)->default_value(19200), "baud rate, 8N1")(
-      "seconds", po::value(&options.seconds)->default_value(10.0), "time to measure the cycle")(
-      "calls", po::value(&options.calls)->default_value(1000), "stop calls");
+  po::options_description description("bus_benchmark wire|stops|commands");
+  description.add_options()("help", "this text")("what", po::value(&options.what), "wire, stops or commands")(
+      "profiles", po::value(&options.profiles)->default_value(INVERTER_BUS_ROOT "/config/drives"),
+      "directory of the drive profiles")("inverters", po::value(&options.scene.inverters)->default_value(31),
+                                         "MX2 on the bus")("baud", po::value(&options.scene.baud)->default_value(19200),
+                                                           "baud rate, 8N1")(
+      "dead", po::value(&options.dead)->default_value(0), "drives that do not answer")(
+      "load", po::value(&options.load)->default_value("full"), "idle or full")(
+      "calls", po::value(&options.calls)->default_value(1000), "stops, velocities or exchanges")(
+      "warm-up", po::value(&options.warm_up)->default_value(3.0), "[s] until the settings of all drives are read")(
+      "spin", po::value(&options.host.spin)->default_value(0.0001),
+      "[s] of each wait of the wire spent looking at the clock")(
+      "realtime-priority", po::value(&options.host.realtime_priority)->default_value(0),
+      "of the wire, where permitted");
+  po::positional_options_description words;
+  words.add("what", 1);
   po::variables_map values;
-  po::store(po::parse_command_line(argc, argv, description), values);
+  po::store(po::command_line_parser(argc, argv).options(description).positional(words).run(), values);
   if (values.count("help") != 0)
   {
     std::cout << description << std::endl;
     std::exit(EXIT_SUCCESS);
   }
   po::notify(values);
+  if (options.dead >= options.scene.inverters)
+  {
+    throw std::runtime_error("--dead: fewer than --inverters");
+  }
   return options;
 }
 }  // namespace
@@ -337,10 +298,18 @@ int main(int argc, char** argv)
   try
   {
     const Options options = readOptions(argc, argv);
-    Bench bench(options);
-    measureCycle(bench, options);
-    measureStops(bench, options);
-    return EXIT_SUCCESS;
+    const std::vector<std::pair<std::string, void (*)(const Options&)>> all{ { "wire", playWire },
+                                                                             { "stops", playStops },
+                                                                             { "commands", playCommands } };
+    for (const auto& [what, play] : all)
+    {
+      if (what == options.what)
+      {
+        play(options);
+        return EXIT_SUCCESS;
+      }
+    }
+    throw std::runtime_error("one of wire, stops, commands, not '" + options.what + "'");
   }
   catch (const std::exception& error)
   {

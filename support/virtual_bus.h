@@ -315,6 +315,22 @@ public:
     clearFrames();
   }
 
+  /// What the flight recorder is told beside the frames.
+  const std::vector<bus::TraceEvent>& events() const
+  {
+    return events_;
+  }
+
+  std::vector<std::string> eventTexts() const
+  {
+    std::vector<std::string> texts;
+    for (const bus::TraceEvent& event : events_)
+    {
+      texts.push_back(event.text.data());
+    }
+    return texts;
+  }
+
   bus::Coordinator& coordinator()
   {
     return coordinator_;
@@ -390,6 +406,7 @@ private:
     {
       log_.push_back(finding);
     }
+    events_.insert(events_.end(), outputs.events.begin(), outputs.events.end());
     for (auto& answer : coordinator_.takeAnswers())
     {
       answer.first(answer.second);
@@ -408,6 +425,7 @@ private:
   std::map<std::size_t, bus::InverterStatus> statuses_;
   std::vector<simulation::FrameRecord> frames_;
   std::vector<bus::Finding> log_;
+  std::vector<bus::TraceEvent> events_;
   std::vector<bus::BusStatus> bus_statuses_;
 };
 }  // namespace inverter_bus

@@ -251,6 +251,7 @@ def fuzz_programs(build, seeds=1000):
 def other_programs(build):
     yield python_program('install', 'test/install_test.py', build)
     yield python_program('programs', 'test/command_line_test.py', build)
+    yield python_program('programs', 'test/benchmark_test.py', build)
     for path in sorted(glob.glob(os.path.join(ROOT, 'test', 'peers', '*_test.py'))):
         yield python_program('peer', os.path.relpath(path, ROOT), build, 180.0)
     yield python_program('demo', 'test/demo_terminal_test.py', build, 600.0)

@@ -21,6 +21,7 @@ Checks::Checks(const Scene& scene, simulation::SimulatedBus& bus, const util::Cl
   , zeros(observed)
   , commands(observed)
   , locks(observed, bus.start())
+  , told_locks(observed)
   , run_frames(observed, plant)
   , set_points(observed)
   , resets(observed, plant)

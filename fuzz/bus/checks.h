@@ -22,6 +22,7 @@
 #include "fuzz/bus/checks/slow_reads.h"
 #include "fuzz/bus/checks/stops.h"
 #include "fuzz/bus/checks/supervision.h"
+#include "fuzz/bus/checks/told_locks.h"
 #include "fuzz/bus/checks/trips.h"
 #include "fuzz/bus/checks/turns.h"
 #include "fuzz/bus/checks/values.h"
@@ -60,6 +61,7 @@ struct Checks
   checks::Zeros zeros;
   checks::Commands commands;
   checks::Locks locks;
+  checks::ToldLocks told_locks;
   checks::RunFrames run_frames;
   checks::SetPoints set_points;
   checks::Resets resets;

@@ -60,6 +60,17 @@ Driver::Driver(const bus::Configuration& configuration, simulation::SimulatedBus
   line.setGatewayTimeout(seconds(configuration.bus.gateway_timeout));
 }
 
+std::vector<bool> Driver::locked(TimePoint now, const bus::VelocityCommand& command) const
+{
+  const bus::Report report = coordinator.report(now);
+  std::vector<bool> locked;
+  for (const auto& target : command.targets)
+  {
+    locked.push_back(report.inverters[target.first].status.locked);
+  }
+  return locked;
+}
+
 bool Driver::budgetWarns(TimePoint now, std::size_t index) const
 {
   const bus::Report report = coordinator.report(now);

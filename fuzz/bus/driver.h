@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "bus/bus_loop.h"
 #include "bus/coordinator.h"
@@ -49,6 +50,8 @@ struct Driver
 
   /// The node warns that it can't serve this inverter within its communication time-out.
   bool budgetWarns(TimePoint now, std::size_t index) const;
+  /// What the status of each inverter of \p command says now of its lock.
+  std::vector<bool> locked(TimePoint now, const bus::VelocityCommand& command) const;
 };
 }  // namespace fuzz
 }  // namespace inverter_bus

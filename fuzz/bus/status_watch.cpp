@@ -42,6 +42,7 @@ void StatusWatch::published(TimePoint now, const bus::InverterStatus& status)
   {
     takeLock(now, index);
   }
+  checks_.told_locks.told(now, index, status.locked);
   checks_.liveness.published(status);
   checks_.locks.tryOpen(now, index);
   checks_.recorder.published(status);

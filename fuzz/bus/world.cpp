@@ -137,6 +137,7 @@ void World::deliver()
 
 std::uint16_t World::command(const bus::VelocityCommand& command)
 {
+  const std::vector<bool> locked = driver_.locked(clock_.now(), command);
   const std::uint16_t result = driver_.coordinator.command(clock_.now(), command);
   digest_.commanded(clock_.now(), result);
   std::ostringstream text;
@@ -147,7 +148,7 @@ std::uint16_t World::command(const bus::VelocityCommand& command)
   }
   text << " -> " << std::hex << std::uppercase << result;
   story_.event(clock_.now(), text.str());
-  checker_.users().commanded(clock_.now(), command, result);
+  checker_.users().commanded(clock_.now(), command, locked, result);
   return result;
 }
 

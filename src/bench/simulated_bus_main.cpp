@@ -2,6 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -53,6 +54,8 @@ po::options_description describeOptions()
        "none | even | odd: what the client uses, where its settings don't show it (pyserial)")           //
       ("seed", po::value<std::uint64_t>()->default_value(1), "of everything that is left to chance")     //
       ("realtime-priority", po::value<int>()->default_value(0), "> 0: SCHED_FIFO, for a punctual wire")  //
+      ("spin", po::value<double>()->default_value(0.0, "0"),
+       "[s] looks at the clock for the last part of each wait, for a punctual wire without that right")  //
       ("turnaround", po::value<double>(), "[s] answer time of all drives after the silence");
   return options;
 }
@@ -161,6 +164,9 @@ void play(const po::variables_map& values)
   SimulatedBus bus(config, readLineOptions(values), Clock::now());
   if (trace)
   {
+    char text[96];
+    std::snprintf(text, sizeof text, "# 0 is %.6f of CLOCK_MONOTONIC", toSeconds(bus.start().time_since_epoch()));
+    *trace << text << std::endl;
     bus.setObserver([&](const FrameRecord& frame) { *trace << frameText(frame, bus.start()) << std::endl; });
   }
   BusRunner runner(bus, link);
@@ -168,6 +174,7 @@ void play(const po::variables_map& values)
   {
     runner.assumeParity(parityOf("client-parity", values["client-parity"].as<std::string>()));
   }
+  runner.spin(values["spin"].as<double>());
   catchSignals(runner);
   runner.readCommands(STDIN_FILENO, [](const std::string& answer) { std::cout << answer << std::endl; });
   std::cout << "simulated bus ready: " << link << " -> " << runner.terminal().path() << ", " << bus.drives().size()
@@ -178,6 +185,9 @@ void play(const po::variables_map& values)
   std::cout << "simulated bus stopped: " << counters.requests << " requests, " << counters.replies << " replies, "
             << counters.lost_gap << " lost to the gap, " << counters.early << " early, " << counters.collisions
             << " collisions" << std::endl;
+  const Punctuality& punctuality = runner.punctuality();
+  std::cout << "the wire was late by " << punctuality.mean() * 1e6 << " us on average, at most "
+            << punctuality.latest() * 1e6 << " us, at " << punctuality.count() << " instants" << std::endl;
 }
 }  // namespace
 

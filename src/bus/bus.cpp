@@ -104,6 +104,10 @@ void Bus::Implementation::deliver()
   {
     observer.log(finding);
   }
+  for (const TraceEvent& event : outputs.events)
+  {
+    recorder.add(event);
+  }
   for (const std::string& reason : outputs.traces)
   {
     if (auto dump = recorder.automaticDump(reason, clock.now()))

@@ -14,7 +14,10 @@ namespace bus
 
 std::uint16_t Coordinator::command(TimePoint now, const VelocityCommand& command)
 {
-  return activities_.velocities.command(now, command);
+  bus_.outbox.at(now);
+  const std::uint16_t error_id = activities_.velocities.command(now, command);
+  activities_.trace.commanded(command, error_id);
+  return error_id;
 }
 
 bool Coordinator::stops(std::size_t index, double velocity) const
@@ -25,32 +28,44 @@ bool Coordinator::stops(std::size_t index, double velocity) const
 void Coordinator::refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id,
                          const std::string& text, bool group)
 {
+  bus_.outbox.at(now);
+  activities_.trace.refused(text, error_id);
   activities_.velocities.refuse(now, indices, error_id, text, group);
 }
 
 void Coordinator::stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback)
 {
+  bus_.outbox.at(now);
+  activities_.trace.called("stop", index);
   activities_.stops.stop(now, index, mode, std::move(callback));
 }
 
 void Coordinator::reset(TimePoint now, std::size_t index, AnswerCallback callback)
 {
+  bus_.outbox.at(now);
+  activities_.trace.called("reset", index);
   activities_.services.reset(now, index, std::move(callback));
 }
 
 void Coordinator::readFaults(TimePoint now, std::size_t index, AnswerCallback callback)
 {
+  bus_.outbox.at(now);
+  activities_.trace.called("read_faults", index);
   activities_.services.readFaults(now, index, std::move(callback));
 }
 
 void Coordinator::readParameter(TimePoint now, std::size_t index, const std::string& name, AnswerCallback callback)
 {
+  bus_.outbox.at(now);
+  activities_.trace.called("read_parameter", index);
   activities_.services.readParameter(now, index, name, std::move(callback));
 }
 
 void Coordinator::writeParameter(TimePoint now, std::size_t index, const std::string& name, double value, bool persist,
                                  AnswerCallback callback)
 {
+  bus_.outbox.at(now);
+  activities_.trace.called("write_parameter", index);
   activities_.services.writeParameter(now, index, name, value, persist, std::move(callback));
 }
 
@@ -58,12 +73,13 @@ void Coordinator::writeParameter(TimePoint now, std::size_t index, const std::st
 
 void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
 {
+  bus_.outbox.at(now);
   activities_.probes.lateReply(now, late);
 }
 
-void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found)
+void Coordinator::noteLine(TimePoint now, const LineFacts& facts)
 {
-  bus_.line_watch.note(now, counters, echo_found, bus_.line.gatewayQuirk());
+  bus_.line_watch.note(now, facts);
 }
 
 void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
@@ -75,26 +91,25 @@ void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency
 
 void Coordinator::portOpened(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.port.opened(now);
 }
 
 void Coordinator::portMissing(TimePoint now, const std::string& error, bool in_use)
 {
+  bus_.outbox.at(now);
   activities_.port.missing(now, error, in_use);
 }
 
 void Coordinator::portPending(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.port.pending(now);
-}
-
-void Coordinator::portLost(TimePoint now)
-{
-  activities_.port.lost(now);
 }
 
 void Coordinator::portClosed(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.port.closed(now);
 }
 
@@ -116,11 +131,13 @@ bool Coordinator::renewalDue(TimePoint now)
 
 void Coordinator::renewing(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.port.renewing(now);
 }
 
 void Coordinator::reopening(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.port.reopening(now);
 }
 
@@ -131,6 +148,7 @@ bool Coordinator::telnetOver(TimePoint now)
 
 void Coordinator::closedForTelnet(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.port.closedForTelnet(now);
 }
 
@@ -138,6 +156,7 @@ void Coordinator::closedForTelnet(TimePoint now)
 
 void Coordinator::beginShutdown(TimePoint now)
 {
+  bus_.outbox.at(now);
   activities_.shutdown.begin(now);
 }
 

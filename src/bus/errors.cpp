@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
 #include "inverter_bus/bus/types.h"
+
+#include <algorithm>
+
 #include "util/text.h"
 
 namespace inverter_bus
@@ -27,6 +30,14 @@ bool isLastingRefusal(const wire::Reply& reply)
     return main_code == 0x04 || main_code == 0x10 || main_code == 0x11 || main_code == 0x30;
   }
   return reply.outcome == wire::Outcome::Exception && reply.pdu.size() > 1 && reply.pdu[1] <= LAST_LASTING_EXCEPTION;
+}
+
+TraceEvent traceEvent(TimePoint time, const std::string& text)
+{
+  TraceEvent event;
+  event.time = time;
+  std::copy_n(text.begin(), std::min(text.size(), event.text.size() - 1), event.text.begin());
+  return event;
 }
 
 std::string errorIdText(std::uint16_t error_id)

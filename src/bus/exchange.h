@@ -19,6 +19,8 @@ struct InFlight
   Pick pick;
   std::size_t inverter = 0;
   wire::Request request;
+  /// Time that it occupies the line if it is answered at once.
+  Duration cost{ 0 };
   /// A loop-back that makes sure that no late reply is on its way; the real request follows.
   bool resync = false;
   /// The request is a loop-back, as a probe or for resync.

@@ -60,7 +60,7 @@ std::string inverterLine(const bus::InverterConfig& config)
        << util::numberText(config.response_timeout) << " s";
   line << (config.stop_unexpected_motion ? ", stop_unexpected_motion" : "")
        << (config.release_on_exit ? ", release_on_exit" : "")
-       << (config.changes.overrides_yaml.empty() ? "" : ", with overrides");
+       << (config.changes.overrides.map.empty() ? "" : ", with overrides");
   for (const std::string& name : config.changes.confirm)
   {
     line << ", confirmed: " << name;
@@ -75,13 +75,13 @@ std::string inverterLine(const bus::InverterConfig& config)
 
 bool waitForMaster(const util::SteadyEvent& end)
 {
-  bool told = false;
+  bool said = false;
   while (!ros::master::check())
   {
-    if (!told)
+    if (!said)
     {
       log(bus::Level::Warn, "waiting for the ROS master at " + ros::master::getURI() + ": start roscore or roslaunch");
-      told = true;
+      said = true;
     }
     if (end.waitFor(MASTER_PERIOD))
     {

@@ -4,7 +4,9 @@
 
 #include <cstdio>
 #include <ctime>
+#include <optional>
 
+#include "util/printable.h"
 #include "util/text.h"
 
 namespace inverter_bus
@@ -49,17 +51,28 @@ const char* kindText(wire::FrameEvent::Kind kind)
   return "?        ";
 }
 
-void writeFrame(const wire::FrameEvent& frame, TimePoint previous, WallTime wall, std::ostream& out)
+/// What every line begins with.
+std::string stampText(Duration gap, WallTime wall)
 {
-  const auto gap = std::chrono::duration_cast<std::chrono::microseconds>(frame.time - previous).count();
+  const auto since_last = std::chrono::duration_cast<std::chrono::microseconds>(gap).count();
   char gap_text[24];
-  std::snprintf(gap_text, sizeof gap_text, "%+10lld", static_cast<long long>(gap));
-  out << formatUtc(wall, "%H:%M:%S") << ' ' << gap_text << "  " << kindText(frame.kind);
-  for (const std::uint8_t byte : frame.bytes)
+  std::snprintf(gap_text, sizeof gap_text, "%+10lld", static_cast<long long>(since_last));
+  return formatUtc(wall, "%H:%M:%S") + ' ' + gap_text + "  ";
+}
+
+void writeFrame(const bus::TraceDump& dump, const bus::TraceFrame& frame, std::ostream& out)
+{
+  out << kindText(frame.kind);
+  for (std::size_t place = 0; place < frame.size; ++place)
   {
-    out << ' ' << util::hexText(byte, 2);
+    out << ' ' << util::hexText(dump.bytes[static_cast<std::size_t>(frame.first) + place], 2);
   }
   out << '\n';
+}
+
+void writeEvent(const bus::TraceEvent& event, std::ostream& out)
+{
+  out << "event     " << util::printable(event.text.data(), event.text.size()) << '\n';
 }
 }  // namespace
 
@@ -74,13 +87,20 @@ void writeTrace(const bus::TraceDump& dump, TimePoint steady, WallTime wall, std
     return wall + std::chrono::duration_cast<WallTime::duration>(time - steady);
   };
   out << "# inverter_bus flight recorder: " << dump.reason << '\n';
-  out << "# at " << formatUtc(to_wall(dump.time), "%Y-%m-%dT%H:%M:%S") << "Z, " << dump.frames.size() << " frames\n";
-  out << "# UTC            since last [us]  frame\n";
-  TimePoint previous = dump.frames.empty() ? steady : dump.frames.front().time;
-  for (const wire::FrameEvent& frame : dump.frames)
+  out << "# at " << formatUtc(to_wall(dump.time), "%Y-%m-%dT%H:%M:%S") << "Z, " << dump.frames.size() << " frames, "
+      << dump.events.size() << " events\n";
+  out << "# UTC            since last [us]  frame or event\n";
+  std::optional<TimePoint> previous;
+  auto frame = dump.frames.begin();
+  auto event = dump.events.begin();
+  while (frame != dump.frames.end() || event != dump.events.end())
   {
-    writeFrame(frame, previous, to_wall(frame.time), out);
-    previous = frame.time;
+    // What happened at the same moment as a frame led to it.
+    const bool event_next = event != dump.events.end() && (frame == dump.frames.end() || event->time <= frame->time);
+    const TimePoint time = event_next ? event->time : frame->time;
+    out << stampText(time - previous.value_or(time), to_wall(time));
+    previous = time;
+    event_next ? writeEvent(*event++, out) : writeFrame(dump, *frame++, out);
   }
 }
 }  // namespace ros_node

@@ -104,15 +104,14 @@ struct Configuration
 {
   BusConfig bus;
   std::vector<drive::Drive> drives;
-  /// What was taken and should be mended: one line each, for the log and for whoever checks a file.
+  /// What was accepted but should be corrected: one line each, for the log and for programs that check a file.
   std::vector<std::string> warnings;
 };
 
 /// Judges the node's parameters (contract, section 2). \p place names the source in messages ("~" for ROS parameters or a
 /// file), \p profile_directory holds the profiles.
 /// \throws drive::ConfigurationError one line: key, value, place, what is allowed
-Configuration readConfiguration(const Value& parameters, const std::string& place,
-                                const std::string& profile_directory);
+Configuration readConfiguration(Value parameters, const std::string& place, const std::string& profile_directory);
 }  // namespace bus
 }  // namespace inverter_bus
 

@@ -3,6 +3,7 @@
 #ifndef INVERTER_BUS_BUS_TYPES_H
 #define INVERTER_BUS_BUS_TYPES_H
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -180,13 +181,34 @@ struct Report
   std::vector<InverterReport> inverters;
 };
 
-/// Frames of the flight recorder, on their way to a file.
+/// A frame of a TraceDump.
+struct TraceFrame
+{
+  wire::FrameEvent::Kind kind = wire::FrameEvent::Kind::Request;
+  TimePoint time;
+  std::uint64_t first = 0;  ///< where its bytes begin among those of all frames
+  std::size_t size = 0;     ///< [bytes]
+};
+
+/// What happened, beside the frames: a command came, a stop was accepted, a reply did not come.
+struct TraceEvent
+{
+  TimePoint time;
+  std::array<char, 120> text{};  ///< ends with 0; what is longer is cut off
+};
+
+/// What the flight recorder has, on its way to a file; oldest first.
 struct TraceDump
 {
   std::string reason;
   TimePoint time;
-  std::vector<wire::FrameEvent> frames;
+  std::vector<TraceFrame> frames;
+  wire::Bytes bytes;
+  std::vector<TraceEvent> events;
 };
+
+/// \p text as it fits into an event.
+TraceEvent traceEvent(TimePoint time, const std::string& text);
 
 /// Where the bus reports to. All calls come from the bus thread with no lock of the bus held, and must not block.
 class Observer

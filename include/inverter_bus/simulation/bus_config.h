@@ -60,6 +60,7 @@ struct SerialOptions
 ///     simulation:
 ///       belt_1: {model: omron_mx2, parameters: {C077: 1.0}, turnaround: 0.005, start_up_time: 1.0, reset_silence: 1.0,
 ///                eeprom_time: 0.3, load: 0.3, restart_after_timeout: false, self_clearing_coils: false,
+///                mapped_reads_in_blocks: true, reserved_readable: true,
 ///                baud_rate: 9600, parity: even, data_bits: 8, stop_bits: 1, station: 4}
 ///       pump: {model: teco_7200ma, reverse_word: 2, monitor_base: 0x0020}
 ///       fan: {model: omron_3g3je, operation_codes: {run_forward: "1101"}, area_1_readable: true}

@@ -4,13 +4,18 @@
 #ifndef INVERTER_BUS_SIMULATION_BUS_RUNNER_H
 #define INVERTER_BUS_SIMULATION_BUS_RUNNER_H
 
+#include <poll.h>
+
 #include <atomic>
+#include <cstddef>
+#include <ctime>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "inverter_bus/simulation/pseudo_terminal.h"
+#include "inverter_bus/simulation/punctuality.h"
 #include "inverter_bus/simulation/simulated_bus.h"
 
 namespace inverter_bus
@@ -36,12 +41,18 @@ public:
   /// The parity that the client is taken to use, whatever its terminal shows (see terminal_settings.h). Call it before run().
   void assumeParity(Parity parity);
 
+  /// The last \p lead seconds of each wait are spent looking at the clock, which is less late than the kernel's timers and
+  /// costs so much of a core; 0: never. Call it before run().
+  void spin(double lead);
+
   /// Returns after stop(). \p realtime_priority 1 to 99: SCHED_FIFO for the calling thread, where that is permitted; 0: as
   /// the thread is.
   void run(int realtime_priority = 0);
   void stop() noexcept;
   std::string command(const std::string& line);
   const PseudoTerminal& terminal() const;
+  /// How late the wire was; 0 before run(). Call it after run().
+  const Punctuality& punctuality() const;
 
 private:
   void step(bool readable);
@@ -49,7 +60,8 @@ private:
   void matchSettings(TimePoint now);
   void handOver();
   void readCommandBytes();
-  int waitTime(long& nanoseconds) const;
+  timespec waitTime() const;
+  void wait(pollfd* watched, std::size_t count);
 
   SimulatedBus& bus_;
   PseudoTerminal terminal_;
@@ -61,6 +73,8 @@ private:
   int command_descriptor_ = -1;
   std::string command_text_;
   std::function<void(const std::string&)> answer_;
+  Duration lead_ = Duration::zero();
+  Punctuality punctuality_;
 };
 }  // namespace simulation
 }  // namespace inverter_bus

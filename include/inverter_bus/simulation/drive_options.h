@@ -36,6 +36,10 @@ struct DriveOptions
   /// The coils for external trip and reset fall back by themselves (true) or stay as written (false). The manuals don't
   /// say; LinuxCNC's wj200_vfd writes them on only.
   bool self_clearing_coils = false;
+  /// MX2: a read of several registers may hold mapped ones (P200). The manuals show reads of one only.
+  bool mapped_reads_in_blocks = true;
+  /// MX2: registers that its lists call "reserved" can be read (0), else they answer 02. The manuals don't say.
+  bool reserved_readable = true;
   /// 7200MA: command word for reverse, 2 (a run bit of its own) or 3 (direction bit beside RUN). Unknown, see TecoDrive.
   int reverse_word = 2;
   int monitor_base = 0x0020;  ///< 7200MA: first monitor register. Unknown, see TecoDrive.

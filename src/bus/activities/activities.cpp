@@ -7,7 +7,8 @@ namespace inverter_bus
 namespace bus
 {
 Activities::Activities(BusState& bus)
-  : turns(bus)
+  : trace(bus)
+  , turns(bus)
   , traffic(bus, turns)
   , stops(bus, turns, traffic)
   , services(bus, turns, stops)

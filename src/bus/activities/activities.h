@@ -9,6 +9,7 @@
 #include "bus/activities/reports.h"
 #include "bus/activities/settings_reads.h"
 #include "bus/activities/shutdown.h"
+#include "bus/activities/trace_notes.h"
 #include "bus/activities/velocities.h"
 
 namespace inverter_bus
@@ -23,6 +24,7 @@ struct Activities
   Activities(const Activities&) = delete;
   Activities& operator=(const Activities&) = delete;
 
+  TraceNotes trace;
   Turns turns;
   GatewayTraffic traffic;
   Stops stops;

@@ -30,9 +30,8 @@ Duration longestResponseTimeout(const BusConfig& bus)
 }
 }  // namespace
 
-BusState::BusState(const Configuration& the_configuration, const wire::Line& the_line)
+BusState::BusState(const Configuration& the_configuration, const wire::Line& line)
   : configuration(the_configuration)
-  , line(the_line)
   , budget(Budget(configuration, line).figures())
   , scheduler(schedulerSettings(configuration.bus))
   , slow_share(budget.slow)

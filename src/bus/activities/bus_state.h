@@ -30,12 +30,10 @@ namespace bus
 /// What the activities of one bus share. Whoever changes what is the business of one activity only, does it there.
 struct BusState
 {
-  BusState(const Configuration& the_configuration, const wire::Line& the_line);
+  /// \p line is asked for its timing, and not kept.
+  BusState(const Configuration& the_configuration, const wire::Line& line);
 
   const Configuration& configuration;
-  /// Only questions without side effects, and only from what the bus thread calls; what users ask for and what is told to them
-  /// knows of the line what line_watch has copied.
-  const wire::Line& line;
   /// Of the configuration alone: it does not change while the bus runs.
   const Budget::Figures budget;
   /// In node order.

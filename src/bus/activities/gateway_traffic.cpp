@@ -233,7 +233,7 @@ std::optional<Finding> GatewayTraffic::finding() const
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.
 std::optional<Finding> GatewayTraffic::quirkFinding() const
 {
-  const std::string& quirk = bus_.line_watch.gatewayQuirk();
+  const std::string& quirk = bus_.line_watch.facts().gateway_quirk;
   return quirk.empty() ? std::nullopt
                        : std::optional<Finding>(Finding{ Level::Warn, "the gateway is used as it is: " + quirk });
 }

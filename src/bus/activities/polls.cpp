@@ -20,14 +20,14 @@ Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops,
 {
 }
 
-InFlight Polls::compose(TimePoint now, const Pick& pick)
+InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   drive::ReadBlock block = inverter.refresh.next(now, turns_.slowLeave(now, inverter));
   current.request = inverter.drive.read(inverter.config.node, block);
-  while (!resync && !bus_.line.mayAsk(current.request) && inverter.refresh.skipSlow())
+  while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {
     // What decides over safety does not wait a second for a temperature.
     block = inverter.refresh.next(now);
@@ -35,20 +35,20 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
   }
   current.slow = inverter.refresh.asked().isSlowed();
   std::optional<drive::ReadBlock> variant = block;
-  while (!resync && variant && !bus_.line.mayAsk(current.request))
+  while (!resync && variant && !line.mayAsk(current.request, now))
   {
     // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
     variant = inverter.drive.variantOf(*variant);
     current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
   }
   const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
-  if (!resync && !bus_.line.mayAsk(current.request) && serve_by && *serve_by <= now)
+  if (!resync && !line.mayAsk(current.request, now) && serve_by && *serve_by <= now)
   {
-    const auto spare = guard_.spareRead(inverter);
+    const auto spare = guard_.spareRead(now, inverter, line);
     current.pick.what = spare ? Pick::What::KeepAlive : current.pick.what;
     current.request = spare.value_or(current.request);
   }
-  keepAlive(now, inverter, current);
+  keepAlive(now, inverter, current, line);
   current.request = inverter.prepared(current.request);
   return current;
 }
@@ -56,7 +56,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
 /// Where only writes, or the command word, feed the drive's own time-out (contract, 8.17): what is in force once more. Rule
 /// 4.1: our RUN only while the last exchange showed it in force, never through a gateway, which could carry it out when
 /// everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11); at rest the stop word.
-void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current) const
+void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current, const LineView& line) const
 {
   const drive::Sequence* stop = inverter.drive.sequence("stop");
   const bool offline = inverter.link.offline() || !inverter.link.known();
@@ -81,7 +81,7 @@ void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current) cons
   {
     request = inverter.drive.write(station, stop->steps.front().point, stop->steps.front().value.value_or(0));
   }
-  if (!request.pdu.empty() && bus_.line.mayAsk(request))
+  if (!request.pdu.empty() && line.mayAsk(request, now))
   {
     current.request = request;
     current.keeps_alive = !with_status;
@@ -97,7 +97,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   const bool says_nothing = bus_.behind_another && !isAnswered(reply);
   if (!current.resync && !says_nothing)
   {
-    inverter.liveness.noteRead(bus_.line.cost(current.request, Duration{ 0 }), reply);
+    inverter.liveness.noteRead(current.cost, reply);
   }
   if (isAnswered(reply))
   {

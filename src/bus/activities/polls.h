@@ -18,7 +18,7 @@ class Polls
 public:
   Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences);
 
-  InFlight compose(TimePoint now, const Pick& pick);
+  InFlight compose(TimePoint now, const Pick& pick, const LineView& line);
   void ended(const InFlight& current, const wire::Reply& reply);
   /// A write of a velocity has ended; what came with it is the answer to the read of the refresh, if it was asked for.
   void cameWithWrite(const InFlight& current, const wire::Reply& reply);
@@ -26,7 +26,7 @@ public:
   void keptAlive(const InFlight& current, const wire::Reply& reply);
 
 private:
-  void keepAlive(TimePoint now, Inverter& inverter, InFlight& current) const;
+  void keepAlive(TimePoint now, Inverter& inverter, InFlight& current, const LineView& line) const;
   void took(const wire::Reply& reply, Inverter& inverter, bool more);
   void refusedStatus(const wire::Reply& reply, Inverter& inverter);
   void judge(TimePoint now, Inverter& inverter);

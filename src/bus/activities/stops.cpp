@@ -19,6 +19,7 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   {
     bus_.outbox.log(Level::Warn, inverter.config.name + ": stopping: " + reason);
   }
+  const bool news = !inverter.stop.pending();
   inverter.movement.drop();
   inverter.movement.forgetWords();
   bus_.scheduler.eraseVelocity(inverter.index);
@@ -27,7 +28,14 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   {
     return;
   }
-  if (lock)
+  // A request in a gateway may set RUN after the first frame of the stop: locked until the second one is confirmed (contract,
+  // 8.8).
+  const bool locks = lock || bus_.gateway.motionUntil(now, inverter.index);
+  if (news)
+  {
+    bus_.outbox.event(inverter.config.name + ": a stop is accepted" + (locks ? ", which locks" : ""));
+  }
+  if (locks)
   {
     inverter.stop.hold();
     inverter.interlock.stopRequested();
@@ -137,6 +145,7 @@ void Stops::confirmed(TimePoint now, Inverter& inverter)
   inverter.cameToRest(now);
   inverter.settings.released();
   inverter.interlock.stopConfirmed(now);
+  bus_.outbox.event(inverter.config.name + ": the stop is confirmed");
   finishCalls(now);
 }
 
@@ -178,7 +187,7 @@ void Stops::replaceZeros(TimePoint now)
     if (target && target->zero && bus_.scheduler.velocityWaits(inverter->index) &&
         traffic_.zeroNeedsStop(now, *inverter))
     {
-      request(now, *inverter, StopMode::Decelerate, bus_.gateway.motionUntil(now, inverter->index).has_value(), "");
+      request(now, *inverter, StopMode::Decelerate, false, "");
     }
   }
 }

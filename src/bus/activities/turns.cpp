@@ -60,7 +60,7 @@ SlowLeave Turns::slowLeave(TimePoint now, const Inverter& inverter) const
   {
     if (!other->link.offline())
     {
-      needs += slowNeeds(*other, bus_.line.timing().gap(MODBUS_GAP_CHARACTERS), bus_.budget.slow.longest);
+      needs += slowNeeds(*other, bus_.budget.slow.gap, bus_.budget.slow.longest);
       others_ask = others_ask || (other->index != inverter.index && other->refresh.asksForWarning(now));
     }
   }
@@ -75,12 +75,12 @@ void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
   Duration cost{ 0 };
   if (current.pick.what == Pick::What::Refresh && isAnswered(reply))
   {
-    cost = bus_.line.cost(current.request, Duration{ 0 });
+    cost = current.cost;
   }
   bus_.meter.exchange(reply.sent_at, reply.finished_at, cost);
   if (current.slow && !current.resync)
   {
-    bus_.slow_share.spent(reply.finished_at, price(current, reply) + bus_.line.timing().gap(MODBUS_GAP_CHARACTERS));
+    bus_.slow_share.spent(reply.finished_at, price(current, reply) + bus_.budget.slow.gap);
   }
   if (bus_.shutting_down)
   {
@@ -98,8 +98,7 @@ Duration Turns::price(const InFlight& current, const wire::Reply& reply) const
 {
   const Duration own = reply.finished_at - countedFrom(reply);
   const bool by_gateway = bus_.gateway.active() && reply.gateway_code != 0;
-  return std::max(by_gateway ? std::max(own, bus_.gateway.block()) : own,
-                  bus_.line.cost(current.request, Duration{ 0 }));
+  return std::max(by_gateway ? std::max(own, bus_.gateway.block()) : own, current.cost);
 }
 }  // namespace bus
 }  // namespace inverter_bus

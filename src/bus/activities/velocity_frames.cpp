@@ -41,7 +41,8 @@ bool mustBeSeenRunning(const Inverter& inverter)
 /// All command words in one frame where the drive can, with the status in the same exchange where that is what its refresh
 /// wants next (contract, 3.10); a word at a time where such a frame could give back a RUN that the drive has lost (rule 4.1),
 /// where a late reply could be taken for its answer, and after one that got lost.
-std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, bool& with_status) const
+std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, const LineView& line,
+                                           bool& with_status) const
 {
   with_status = false;
   const bool in_force = inverter.mayRepeatWords(now);
@@ -51,7 +52,7 @@ std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, bo
     const drive::ReadBlock& read = inverter.refresh.next(now, turns_.slowLeave(now, inverter));
     with_status = in_force && !read.chosen.empty();
     auto combined = inverter.movement.nextCombined(with_status ? std::optional<drive::ReadBlock>(read) : std::nullopt);
-    if (combined && bus_.line.mayAsk(combined->request))
+    if (combined && line.mayAsk(combined->request, now))
     {
       return combined;
     }
@@ -63,13 +64,13 @@ std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, bo
   {
     const wire::Request both = inverter.drive.writeAndRead(inverter.config.node, { { write->point, write->raw } },
                                                            inverter.refresh.next(now, turns_.slowLeave(now, inverter)));
-    with_status = isRegisterRead(inverter.refresh.asked()) && bus_.line.mayAsk(both);
+    with_status = isRegisterRead(inverter.refresh.asked()) && line.mayAsk(both, now);
     write->request = with_status ? both : write->request;
   }
   return write;
 }
 
-std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
+std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   std::vector<std::size_t> members = bus_.scheduler.members(pick.command);
   // The member whose turn it is, and if it needs no frame any more, the next one.
@@ -78,7 +79,7 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
   {
     Inverter& inverter = *bus_.inverters[member];
     bool with_status = false;
-    if (const auto write = nextWrite(now, inverter, with_status))
+    if (const auto write = nextWrite(now, inverter, line, with_status))
     {
       if ((write->starts && mustBeSeenRunning(inverter)) || mustBeReadFirst(inverter))
       {

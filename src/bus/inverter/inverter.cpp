@@ -198,9 +198,14 @@ void Inverter::parameterWritten(const std::string& name)
   }
 }
 
-bool Inverter::inSetup() const
+Holds Inverter::holds() const
 {
-  return services.setupOpen() || settings.leavingSetup();
+  Holds holds;
+  holds.stop = stop.held();
+  holds.unidentified = settings.identity() == Identity::Unknown;
+  holds.resetting = services.resetting();
+  holds.in_setup = services.setupOpen() || settings.leavingSetup();
+  return holds;
 }
 
 bool Inverter::mayRepeatWords(TimePoint now) const
@@ -302,14 +307,16 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
 
 // --- status ----------------------------------------------------------------------------------------------------------
 
-Obstacles Inverter::obstacles() const
+Obstacles Inverter::obstacles(TimePoint now) const
 {
+  const Holds held = holds();
   Obstacles obstacles;
+  obstacles.locked = interlock.locked(now, held);
   obstacles.offline = link.offline();
   obstacles.tripped = interlock.isFaulted();
   obstacles.stop_pending = interlock.stopPending();
-  obstacles.reset_active = services.resetting();
-  obstacles.in_setup = inSetup();
+  obstacles.reset_active = held.resetting;
+  obstacles.in_setup = held.in_setup;
   obstacles.wrong_drive = settings.identity() != Identity::Right;
   return obstacles;
 }

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "bus/report/flight_recorder.h"
 
+#include <algorithm>
+
 namespace inverter_bus
 {
 namespace bus
@@ -12,22 +14,46 @@ namespace
 constexpr double AUTOMATIC_DUMP_SPACING_S = 10.0;
 }  // namespace
 
-FlightRecorder::FlightRecorder(std::size_t capacity) : capacity_(capacity)
+constexpr std::size_t FlightRecorder::FRAMES;
+constexpr std::size_t FlightRecorder::EVENTS;
+constexpr std::size_t FlightRecorder::BYTES_PER_FRAME;
+
+FlightRecorder::FlightRecorder(std::size_t frames, std::size_t events)
+  : most_frames_(frames), most_events_(events), frames_(frames), bytes_(frames * BYTES_PER_FRAME)
 {
-  ring_.reserve(capacity);
+  events_.reserve(events);
 }
 
-void FlightRecorder::add(const wire::FrameEvent& event)
+void FlightRecorder::add(const wire::FrameEvent& frame)
 {
   const std::lock_guard<std::mutex> guard(mutex_);
-  if (ring_.size() < capacity_)
+  const std::size_t size = std::min(frame.bytes.size(), bytes_.size());
+  for (std::size_t i = 0; i < size; ++i)
   {
-    ring_.push_back(event);
+    bytes_[(bytes_ever_ + i) % bytes_.size()] = frame.bytes[i];
+  }
+  const std::uint64_t first = bytes_ever_;
+  bytes_ever_ += size;
+  const auto is_lost = [this](const TraceFrame& one) { return one.first + bytes_.size() < bytes_ever_; };
+  while (frame_count_ > 0 && (frame_count_ == most_frames_ || is_lost(frames_[oldest_frame_])))
+  {
+    oldest_frame_ = (oldest_frame_ + 1) % most_frames_;
+    --frame_count_;
+  }
+  frames_[(oldest_frame_ + frame_count_) % most_frames_] = { frame.kind, frame.time, first, size };
+  ++frame_count_;
+}
+
+void FlightRecorder::add(const TraceEvent& event)
+{
+  const std::lock_guard<std::mutex> guard(mutex_);
+  if (events_.size() < most_events_)
+  {
+    events_.push_back(event);
     return;
   }
-  // Moved in: a plain assignment would keep the memory of the longest frame that was ever in this place.
-  ring_[next_] = wire::FrameEvent(event);
-  next_ = (next_ + 1) % capacity_;
+  events_[next_event_] = event;
+  next_event_ = (next_event_ + 1) % most_events_;
 }
 
 TraceDump FlightRecorder::dump(const std::string& reason, TimePoint now) const
@@ -36,10 +62,22 @@ TraceDump FlightRecorder::dump(const std::string& reason, TimePoint now) const
   dump.reason = reason;
   dump.time = now;
   const std::lock_guard<std::mutex> guard(mutex_);
-  dump.frames.reserve(ring_.size());
-  for (std::size_t count = 0; count < ring_.size(); ++count)
+  const std::uint64_t start = frame_count_ == 0 ? bytes_ever_ : frames_[oldest_frame_].first;
+  dump.frames.reserve(frame_count_);
+  for (std::size_t count = 0; count < frame_count_; ++count)
   {
-    dump.frames.push_back(ring_[(next_ + count) % ring_.size()]);
+    dump.frames.push_back(frames_[(oldest_frame_ + count) % most_frames_]);
+    dump.frames.back().first -= start;
+  }
+  dump.bytes.reserve(static_cast<std::size_t>(bytes_ever_ - start));
+  for (std::uint64_t place = start; place < bytes_ever_; ++place)
+  {
+    dump.bytes.push_back(bytes_[place % bytes_.size()]);
+  }
+  dump.events.reserve(events_.size());
+  for (std::size_t count = 0; count < events_.size(); ++count)
+  {
+    dump.events.push_back(events_[(next_event_ + count) % events_.size()]);
   }
   return dump;
 }

@@ -44,10 +44,9 @@ void showError(const Inverter& inverter, TimePoint now, InverterStatus& status)
   }
   else if (inverter.command_error.id() != 0)
   {
-    Obstacles obstacles = inverter.obstacles();
-    obstacles.locked = inverter.interlock.locked(now);
     status.error_id = inverter.command_error.id();
-    status.error_text = inverter.command_error.text(obstacles, exchange_failed ? exchangeText(inverter) : "");
+    status.error_text =
+        inverter.command_error.text(inverter.obstacles(now), exchange_failed ? exchangeText(inverter) : "");
   }
   else if (exchange_failed)
   {
@@ -157,7 +156,7 @@ InverterStatus statusOf(const Inverter& inverter, TimePoint now)
   status.move_velocity_active = inverter.movement.active();
   status.reset_active = inverter.services.resetting();
   status.stop_active = inverter.stop.pending();
-  status.locked = inverter.interlock.locked(now);
+  status.locked = inverter.obstacles(now).locked;
   showError(inverter, now, status);
   const auto& target = inverter.movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
@@ -213,7 +212,7 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
                                               : std::string("not read yet"));
   values.emplace_back("slowest reply", util::durationText(inverter.link.slowestReply()));
   values.emplace_back("returns", std::to_string(inverter.link.returns()));
-  values.emplace_back("locked", inverter.interlock.locked(now) ? "yes" : "no");
+  values.emplace_back("locked", inverter.obstacles(now).locked ? "yes" : "no");
   values.emplace_back("own reply delay", util::durationText(inverter.settings.replyDelay()));
   if (profile.writes == drive::Writes::Eeprom || inverter.drive.wears("frequency"))
   {

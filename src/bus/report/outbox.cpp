@@ -8,19 +8,46 @@ namespace inverter_bus
 {
 namespace bus
 {
-Outbox::Outbox(std::size_t inverters) : last_published_(inverters)
+namespace
 {
+constexpr std::size_t MOST_EVENTS = 2048;
+}  // namespace
+
+Outbox::Outbox(std::size_t inverters) : published_(inverters)
+{
+}
+
+void Outbox::at(TimePoint now)
+{
+  now_ = now;
+}
+
+void Outbox::event(const std::string& text)
+{
+  // More in one turn of the bus than are kept at all: who floods it must not fill the memory.
+  if (outputs_.events.size() < MOST_EVENTS)
+  {
+    outputs_.events.push_back(traceEvent(now_, text));
+  }
 }
 
 void Outbox::log(Level level, const std::string& text, const std::string& subject)
 {
   outputs_.log.push_back({ level, text, subject });
+  event(text);
 }
 
 void Outbox::publish(TimePoint now, const Inverter& inverter)
 {
   outputs_.statuses.push_back(statusOf(inverter, now));
-  last_published_[inverter.index] = now;
+  Published& last = published_[inverter.index];
+  last.at = now;
+  const bool locked = outputs_.statuses.back().locked;
+  if (locked != last.locked)
+  {
+    last.locked = locked;
+    event(inverter.config.name + (locked ? ": is locked" : ": is not locked any more"));
+  }
 }
 
 void Outbox::busStatus(const BusStatus& status)
@@ -51,7 +78,7 @@ void Outbox::refuse(const AnswerCallback& callback, std::uint16_t error_id, cons
 
 TimePoint Outbox::lastPublished(std::size_t inverter) const
 {
-  return last_published_[inverter];
+  return published_[inverter].at;
 }
 
 Outputs Outbox::takeOutputs()

@@ -20,6 +20,8 @@ struct Outputs
   std::vector<InverterStatus> statuses;
   std::vector<BusStatus> bus_statuses;
   std::vector<Finding> log;
+  /// For the flight recorder.
+  std::vector<TraceEvent> events;
   /// Reasons to write the flight recorder.
   std::vector<std::string> traces;
 };
@@ -38,7 +40,11 @@ public:
   /// \p inverters how many there are.
   explicit Outbox(std::size_t inverters);
 
-  /// \p subject see Finding.
+  /// What happens from now on happens at \p now.
+  void at(TimePoint now);
+  /// For the flight recorder only.
+  void event(const std::string& text);
+  /// \p subject see Finding. The flight recorder gets the line too.
   void log(Level level, const std::string& text, const std::string& subject = "");
   /// The status of \p inverter as it is at \p now.
   void publish(TimePoint now, const Inverter& inverter);
@@ -57,9 +63,15 @@ public:
   PendingAnswers takeAnswers();
 
 private:
+  TimePoint now_;
   Outputs outputs_;
   PendingAnswers answers_;
-  std::vector<TimePoint> last_published_;
+  struct Published
+  {
+    TimePoint at;
+    bool locked = true;
+  };
+  std::vector<Published> published_;
 };
 }  // namespace bus
 }  // namespace inverter_bus

@@ -16,6 +16,7 @@ namespace
 // Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
 constexpr double RETURN_S = 3.0;
 constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
+constexpr double STOP_SLACK_CHARACTERS = 64.0;
 // Contract, 8.3: slow values that are read less often are worth a warning.
 constexpr double LONG_SLOW_PERIOD_S = 5.0;
 }  // namespace
@@ -146,6 +147,7 @@ SlowShare::Settings Budget::slowSettings() const
 {
   SlowShare::Settings settings;
   settings.interval = seconds(configuration_.bus.slow_interval);
+  settings.gap = line_.timing().gap(MODBUS_GAP_CHARACTERS);
   settings.cycle = cycle() + seconds(configuration_.bus.interval);
   for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
   {
@@ -275,6 +277,8 @@ Budget::Figures Budget::figures() const
   figures.worst_stop = worstStop();
   figures.longest_exchange = longestExchange();
   figures.deadline_margin = deadlineMargin();
+  figures.longest_pause = line_.patience();
+  figures.stop_slack = line_.timing().characters(STOP_SLACK_CHARACTERS);
   figures.slow = slowSettings();
   figures.findings = findings();
   return figures;

@@ -27,6 +27,10 @@ public:
     Duration worst_stop{ 0 };
     Duration longest_exchange{ 0 };
     Duration deadline_margin{ 0 };
+    /// Longest pause inside a reply that is waited out.
+    Duration longest_pause{ 0 };
+    /// How much longer than that exchange a stop may take to the wire before it is worth a trace: gaps and a short frame.
+    Duration stop_slack{ 0 };
     SlowShare::Settings slow;
     std::vector<Finding> findings;
   };

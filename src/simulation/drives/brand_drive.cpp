@@ -282,7 +282,7 @@ Refusal BrandDrive<Slave>::trip(int code, TimePoint now)
   {
     return "the drive has no power";
   }
-  const Refusal refusal = noSuchTrip(code);
+  Refusal refusal = noSuchTrip(code);
   if (!refusal)
   {
     doTrip(code);

@@ -16,7 +16,8 @@ namespace inverter_bus
 namespace simulation
 {
 /// Exception codes. 01-03: Modbus Application Protocol V1.1b3, 7; 21h-23h: OMRON I578 and
-/// the MX2 manual's chapter 6; 26h: Hitachi SJ700D. A brand with others casts its number.
+/// the MX2 manual's chapter 6; 26h: Hitachi SJ700D; 31h, 32h: I585 p. 440, Hitachi WJ200 p. 551, 569. A brand with others
+/// casts its number.
 enum class ModbusException : std::uint8_t
 {
   None = 0x00,
@@ -26,7 +27,9 @@ enum class ModbusException : std::uint8_t
   ValueOutOfRange = 0x21,
   NotAllowedNow = 0x22,
   ReadOnly = 0x23,
-  EepromBusy = 0x26
+  EepromBusy = 0x26,
+  MappingFault = 0x31,
+  MappedHalf = 0x32
 };
 
 /// What a brand's Modbus offers.

@@ -94,17 +94,55 @@ void BusRunner::matchPort()
   }
 }
 
-int BusRunner::waitTime(long& nanoseconds) const
+void BusRunner::spin(double lead)
+{
+  lead_ = seconds(lead);
+}
+
+const Punctuality& BusRunner::punctuality() const
+{
+  return punctuality_;
+}
+
+timespec BusRunner::waitTime() const
 {
   // At least every second, so that the drives' clocks never lag far behind.
   Duration wait = std::chrono::seconds(1);
   const std::optional<TimePoint> next = bus_.nextEvent();
   if (next)
   {
-    wait = std::min(wait, std::max(Duration::zero(), *next - Clock::now()));
+    wait = std::min(wait, std::max(Duration::zero(), *next - lead_ - Clock::now()));
   }
-  nanoseconds = static_cast<long>(std::chrono::duration_cast<std::chrono::nanoseconds>(wait).count() % 1000000000);
-  return static_cast<int>(std::chrono::duration_cast<std::chrono::seconds>(wait).count());
+  timespec time{};
+  time.tv_sec = static_cast<time_t>(std::chrono::duration_cast<std::chrono::seconds>(wait).count());
+  time.tv_nsec = static_cast<long>(std::chrono::duration_cast<std::chrono::nanoseconds>(wait).count() % 1000000000);
+  return time;
+}
+
+/// Until one of them has something to say, or the next instant of the bus has come.
+void BusRunner::wait(pollfd* watched, std::size_t count)
+{
+  timespec timeout{};
+  std::optional<TimePoint> next;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    watched[1].fd = terminal_.descriptor();
+    timeout = waitTime();
+    next = bus_.nextEvent();
+  }
+  int ready = ::ppoll(watched, count, &timeout, nullptr);
+  timeout = timespec{};
+  while (ready == 0 && lead_ > Duration::zero() && next && Clock::now() < *next && Clock::now() + lead_ >= *next)
+  {
+    ready = ::ppoll(watched, count, &timeout, nullptr);
+  }
+  if (ready < 0)
+  {
+    for (std::size_t index = 0; index < count; ++index)
+    {
+      watched[index].revents = 0;  // a signal came: none of them was looked at
+    }
+  }
 }
 
 void BusRunner::run(int realtime_priority)
@@ -119,18 +157,7 @@ void BusRunner::run(int realtime_priority)
   while (!stop_)
   {
     pollfd watched[3] = { { wake_, POLLIN, 0 }, { -1, POLLIN, 0 }, { command_descriptor_, POLLIN, 0 } };
-    timespec timeout{};
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      watched[1].fd = terminal_.descriptor();
-      long nanoseconds = 0;
-      timeout.tv_sec = waitTime(nanoseconds);
-      timeout.tv_nsec = nanoseconds;
-    }
-    if (ppoll(watched, 3, &timeout, nullptr) < 0)
-    {
-      continue;  // a signal came
-    }
+    wait(watched, 3);
     if ((watched[0].revents & POLLIN) != 0)
     {
       std::uint64_t count = 0;
@@ -149,6 +176,11 @@ void BusRunner::step(bool readable)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
   const TimePoint now = Clock::now();
+  const std::optional<TimePoint> planned = bus_.nextEvent();
+  if (planned && *planned <= now)
+  {
+    punctuality_.add(*planned, now);
+  }
   if (readable)
   {
     matchSettings(now);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-// The last 1,000 frames (contract, section 4.11).
+// The last 8,192 frames and 2,048 events (contract, section 4.11).
 
 #include "bus/report/flight_recorder.h"
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -34,6 +35,13 @@ void record(FlightRecorder& recorder, int first, int count)
   }
 }
 
+wire::Bytes bytesOf(const TraceDump& dump, std::size_t index)
+{
+  const TraceFrame& frame = dump.frames[index];
+  const auto first = dump.bytes.begin() + static_cast<std::ptrdiff_t>(frame.first);
+  return { first, first + static_cast<std::ptrdiff_t>(frame.size) };
+}
+
 TEST(FlightRecorder, isEmptyAtFirst)
 {
   const FlightRecorder recorder;
@@ -48,24 +56,89 @@ TEST(FlightRecorder, givesFramesOldestFirst)
   ASSERT_EQ(dump.frames.size(), 3U);
   EXPECT_EQ(dump.frames[0].time, at(0));
   EXPECT_EQ(dump.frames[2].time, at(2));
-  EXPECT_EQ(dump.frames[2].bytes, (wire::Bytes{ 0, 2 }));
+  EXPECT_EQ(bytesOf(dump, 2), (wire::Bytes{ 0, 2 }));
   EXPECT_EQ(dump.reason, "asked for");
   EXPECT_EQ(dump.time, at(50));
 }
 
-TEST(FlightRecorder, keepsTheLastThousandFrames)
+TEST(FlightRecorder, keepsTheLast8192Frames)
 {
-  for (const int recorded : { 1000, 1001, 1999, 2000, 4321 })
+  for (const int recorded : { 8192, 8193, 16383, 16384, 20001 })
   {
     FlightRecorder recorder;
     record(recorder, 0, recorded);
     const TraceDump dump = recorder.dump("", at(0));
-    ASSERT_EQ(dump.frames.size(), 1000U) << recorded;
-    for (int index = 0; index < 1000; ++index)
+    ASSERT_EQ(dump.frames.size(), 8192U) << recorded;
+    for (int index = 0; index < 8192; ++index)
     {
-      ASSERT_EQ(dump.frames[static_cast<std::size_t>(index)].time, at(recorded - 1000 + index)) << recorded;
+      const int number = recorded - 8192 + index;
+      ASSERT_EQ(dump.frames[static_cast<std::size_t>(index)].time, at(number)) << recorded;
+      ASSERT_EQ(bytesOf(dump, static_cast<std::size_t>(index)), frame(number).bytes) << recorded;
     }
   }
+}
+
+TEST(FlightRecorder, keepsTheLast2048EventsBesideTheFrames)
+{
+  for (const int recorded : { 0, 1, 2048, 2049, 5000 })
+  {
+    FlightRecorder recorder;
+    record(recorder, 0, 3);
+    for (int number = 0; number < recorded; ++number)
+    {
+      recorder.add(traceEvent(at(number) + std::chrono::microseconds(7), "event " + std::to_string(number)));
+    }
+    const TraceDump dump = recorder.dump("", at(0));
+    EXPECT_EQ(dump.frames.size(), 3U);
+    const int kept = std::min(recorded, 2048);
+    ASSERT_EQ(dump.events.size(), static_cast<std::size_t>(kept));
+    for (int index = 0; index < kept; ++index)
+    {
+      const TraceEvent& event = dump.events[static_cast<std::size_t>(index)];
+      const int number = recorded - kept + index;
+      ASSERT_EQ(event.time, at(number) + std::chrono::microseconds(7));
+      ASSERT_EQ(std::string(event.text.data()), "event " + std::to_string(number));
+    }
+  }
+}
+
+TEST(FlightRecorder, framesOfTheLongestKindAllHaveRoom)
+{
+  // 16 registers: a request of 8 bytes, a reply of 37.
+  FlightRecorder recorder;
+  for (int number = 0; number < 10000; ++number)
+  {
+    wire::FrameEvent event = frame(number);
+    event.bytes.resize(number % 2 == 0 ? 8 : 37, static_cast<std::uint8_t>(number));
+    recorder.add(event);
+  }
+  EXPECT_EQ(recorder.dump("", at(0)).frames.size(), 8192U);
+}
+
+TEST(FlightRecorder, ofFramesThatAreTooLongForItTheNewestStay)
+{
+  FlightRecorder recorder(5);  // room for 200 bytes
+  for (int number = 0; number < 9; ++number)
+  {
+    wire::FrameEvent event = frame(number);
+    event.bytes.assign(90, static_cast<std::uint8_t>(number));
+    recorder.add(event);
+  }
+  TraceDump dump = recorder.dump("", at(0));
+  ASSERT_EQ(dump.frames.size(), 2U);
+  EXPECT_EQ(bytesOf(dump, 0), wire::Bytes(90, 7));
+  EXPECT_EQ(bytesOf(dump, 1), wire::Bytes(90, 8));
+
+  wire::FrameEvent longest = frame(9);
+  longest.bytes.assign(300, 9);
+  recorder.add(longest);
+  dump = recorder.dump("", at(0));
+  ASSERT_EQ(dump.frames.size(), 1U);
+  EXPECT_EQ(bytesOf(dump, 0), wire::Bytes(200, 9));
+  recorder.add(frame(10));
+  dump = recorder.dump("", at(0));
+  ASSERT_EQ(dump.frames.size(), 1U);
+  EXPECT_EQ(bytesOf(dump, 0), frame(10).bytes);
 }
 
 TEST(FlightRecorder, dumpLeavesTheRecordAsItIs)

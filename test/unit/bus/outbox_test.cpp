@@ -33,6 +33,31 @@ TEST(Outbox, keepsTheOrderAndIsEmptyAfterwards)
   EXPECT_THAT(outbox.takeOutputs().log, IsEmpty());
 }
 
+TEST(Outbox, eventsHaveTheTimeOfWhatIsDoneAndLogLinesAreEventsToo)
+{
+  Outbox outbox(1);
+  outbox.at(at(5));
+  outbox.event("a stop is accepted");
+  outbox.at(at(7));
+  outbox.log(Level::Warn, "the port is gone");
+  const Outputs outputs = outbox.takeOutputs();
+  ASSERT_THAT(outputs.events, SizeIs(2));
+  EXPECT_EQ(outputs.events[0].time, at(5));
+  EXPECT_STREQ(outputs.events[0].text.data(), "a stop is accepted");
+  EXPECT_EQ(outputs.events[1].time, at(7));
+  EXPECT_STREQ(outputs.events[1].text.data(), "the port is gone");
+}
+
+TEST(Outbox, aFloodOfEventsIsBounded)
+{
+  Outbox outbox(1);
+  for (int number = 0; number < 10000; ++number)
+  {
+    outbox.event("refused");
+  }
+  EXPECT_THAT(outbox.takeOutputs().events, SizeIs(2048));
+}
+
 TEST(Outbox, anAnswerThatNobodyWaitsForIsNotKept)
 {
   Outbox outbox(1);

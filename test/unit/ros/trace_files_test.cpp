@@ -49,9 +49,11 @@ protected:
     bus::TraceDump dump;
     dump.reason = reason;
     dump.time = std::chrono::steady_clock::now();
-    dump.frames.push_back(
-        { wire::FrameEvent::Kind::Request, dump.time - std::chrono::microseconds(1500), { 1, 0xAB } });
-    dump.frames.push_back({ wire::FrameEvent::Kind::Reply, dump.time, { 1, 3 } });
+    dump.bytes = { 1, 0xAB, 1, 3 };
+    dump.frames.push_back({ wire::FrameEvent::Kind::Request, dump.time - std::chrono::microseconds(1500), 0, 2 });
+    dump.frames.push_back({ wire::FrameEvent::Kind::Reply, dump.time, 2, 2 });
+    dump.events.push_back(bus::traceEvent(dump.time - std::chrono::microseconds(500), "belt_1: a stop\nis accepted"));
+    dump.events.push_back(bus::traceEvent(dump.time + std::chrono::microseconds(3), std::string(500, 'x')));
     return dump;
   }
 
@@ -109,7 +111,20 @@ TEST_F(TraceFilesTest, aFileHoldsTheFramesWithTheirTimes)
   text << std::ifstream(path).rdbuf();
   EXPECT_THAT(text.str(), HasSubstr("belt_1 trip"));
   EXPECT_THAT(text.str(), HasSubstr("request   01 AB"));
-  EXPECT_THAT(text.str(), HasSubstr("+1500  reply     01 03"));
+  EXPECT_THAT(text.str(), HasSubstr("2 frames, 2 events"));
+  EXPECT_THAT(text.str(), HasSubstr("+500  reply     01 03"));
+}
+
+TEST_F(TraceFilesTest, eventsStandBetweenTheFramesInTheOrderOfTime)
+{
+  TraceFiles traces(directory_.string(), "/bus", log_);
+  std::ostringstream text;
+  text << std::ifstream(write(traces, "x")).rdbuf();
+  const std::string file = text.str();
+  EXPECT_THAT(file, HasSubstr("+1000  event     belt_1: a stop is accepted\n")) << "one line, whatever is in it";
+  EXPECT_LT(file.find("request   01 AB"), file.find("event     belt_1"));
+  EXPECT_LT(file.find("event     belt_1"), file.find("reply     01 03"));
+  EXPECT_THAT(file, HasSubstr("+3  event     " + std::string(119, 'x') + "\n")) << "what is longer is cut off";
 }
 
 TEST_F(TraceFilesTest, aReasonCannotLeaveTheDirectory)

@@ -147,7 +147,7 @@ TEST(SimulatedMx2Frames, exceptions)
   TestBus bus(mx2At(1));
   EXPECT_EQ("01 84 01", bus.ask("01 04 00 00 00 01"));
   EXPECT_EQ("01 82 01", bus.ask("01 02 00 00 00 01"));
-  EXPECT_EQ("01 83 02", bus.ask("01 03 10 0E 00 02"));  // 100Fh doesn't exist
+  EXPECT_EQ("01 83 02", bus.ask("01 03 10 28 00 02"));  // 1029h is reserved, 102Ah doesn't exist
   EXPECT_EQ("01 83 03", bus.ask("01 03 10 00 00 11"));  // 17 registers
   EXPECT_EQ("01 83 03", bus.ask("01 03 10 00 00 00"));
   EXPECT_EQ("01 81 03", bus.ask("01 01 00 00 00 21"));  // 33 coils

@@ -45,6 +45,7 @@ HitachiDrive::HitachiDrive(const HitachiModel& model, const DriveOptions& option
   trips_.resize(TRIP_BLOCKS);
   buildMonitors();
   setSerial(serialInEffect());
+  map_.latch(memory_);
   control();
 }
 
@@ -325,6 +326,7 @@ void HitachiDrive::gainPower()
 {
   setStation(static_cast<int>(memory_.ram(code_.c072)));
   setSerial(serialInEffect());
+  map_.latch(memory_);
   if (safe_stop_)
   {
     doTrip(37);

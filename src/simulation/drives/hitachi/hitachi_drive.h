@@ -17,6 +17,7 @@
 #include "inverter_bus/simulation/drive_options.h"
 #include "simulation/drives/brand_drive.h"
 #include "simulation/drives/hitachi/hitachi_model.h"
+#include "simulation/drives/hitachi/register_map.h"
 #include "simulation/drives/motor_usage.h"
 
 namespace inverter_bus
@@ -126,6 +127,14 @@ private:
   bool atSetFrequency() const;
   bool atArrivalFrequency() const;
 
+  // hitachi_mapping.cpp
+  int wordsAt(std::uint16_t number) const;
+  std::uint16_t otherHalf(std::uint16_t number) const;
+  bool mapsAny(std::uint32_t first, std::uint32_t count) const;
+  ModbusException resolve(std::uint16_t number, std::uint16_t& internal, const RegisterMap::Slot*& slot) const;
+  ModbusException readMapped(std::uint16_t number, std::uint16_t& value) const;
+  ModbusException stageMapped(std::uint16_t number, std::uint16_t value, Change& change) const;
+
   // hitachi_registers.cpp
   void buildMonitors();
   void buildTripMonitors();
@@ -153,6 +162,7 @@ private:
   bool store_next_write_ = false;     // register 0902h
   bool store_this_write_ = false;
   MotorUsage usage_;
+  RegisterMap map_;
 
   struct Codes
   {

@@ -52,6 +52,7 @@ void HitachiDrive::describeBrand(ShowList& list) const
   list.flag("panel", panel_.inCommand());
   list.flag("held", hold_ != Hold::None);
   list.flag("safe_stop", safe_stop_);
+  list.flag("mapping", map_.on());
   list.number("stored_values", memory_.storedValues());
   list.number("ram_changes", memory_.ramChanges());
 }

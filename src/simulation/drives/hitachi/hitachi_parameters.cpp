@@ -260,8 +260,7 @@ const std::vector<Run> MX2_RUNS = {
   { "P041", 0x162B, 1, 1 },  { "P046", 0x1630, 1, 1 },  { "P048", 0x1632, 2, 1 },  { "P055", 0x1639, 5, 1 },
   { "P060", 0x163E, 8, 2 },  { "P068", 0x164E, 4, 1 },  { "P072", 0x1652, 2, 2 },  { "P075", 0x1657, 1, 1 },
   { "P077", 0x1659, 1, 1 },  { "P080", 0x165C, 3, 1 },  { "P083", 0x1660, 1, 2 },  { "P100", 0x1666, 32, 1 },
-  { "P140", 0x168E, 16, 1 }, { "P160", 0x16A2, 10, 1 }, { "P170", 0x16AC, 10, 1 }, { "P201", 0x16C9, 30, 1 },
-  { "P301", 0x16E7, 10, 1 },
+  { "P140", 0x168E, 16, 1 }, { "P160", 0x16A2, 10, 1 }, { "P170", 0x16AC, 10, 1 },
 };
 
 std::string nextCode(const std::string& code, int step)
@@ -291,12 +290,26 @@ void appendMultiSpeeds(std::vector<Parameter>& table)
     table.push_back({ nextCode("A021", i), static_cast<std::uint16_t>(0x1218 + 2 * i), 2, 2, 0, 40000, 0, RUN, 0 });
   }
 }
+/// The ten slots of the Modbus mapping: see RegisterMap. Ranges: Hitachi WJ200 p. 532; that they are locked while the motor
+/// runs: M.
+void appendMapping(std::vector<Parameter>& table)
+{
+  const auto number = [](int first, int slot) { return static_cast<std::uint16_t>(first + slot); };
+  for (int slot = 0; slot < 10; ++slot)
+  {
+    table.push_back({ nextCode("P201", slot), number(0x16C9, slot), 1, 0, 0, W1, 0, STOP, 0 });     // external number
+    table.push_back({ nextCode("P211", slot), number(0x16D3, slot), 1, 0, 0, 1, 0, STOP, 0 });      // 1: signed
+    table.push_back({ nextCode("P221", slot), number(0x16DD, slot), 1, 3, 1, W1, 1000, STOP, 0 });  // ratio
+    table.push_back({ nextCode("P301", slot), number(0x16E7, slot), 1, 0, 0, W1, 0, STOP, 0 });     // internal number
+  }
+}
 }  // namespace
 
 std::vector<Parameter> mx2Parameters()
 {
   std::vector<Parameter> table = COMMON;
   table.insert(table.end(), MX2_ONLY.begin(), MX2_ONLY.end());
+  appendMapping(table);
   appendMultiSpeeds(table);
   append(table, COMMON_RUNS);
   append(table, MX2_RUNS);

@@ -18,8 +18,10 @@ namespace
 constexpr std::uint16_t REFERENCE_HIGH = 0x0001;  // F001
 constexpr std::uint16_t REFERENCE_LOW = 0x0002;
 constexpr std::uint16_t PID_FEEDBACK = 0x0006;
-constexpr std::uint16_t RESERVED_FIRST = 0x0007;
-constexpr std::uint16_t RESERVED_LAST = 0x0010;
+/// I570 p. 306, 309: "reserved", where others are "not used, inaccessible". 1029h: a real MX2 answered a write with 23h.
+constexpr std::uint16_t RESERVED[] = { 0x0007, 0x0008, 0x0009, 0x000A, 0x000B, 0x000C, 0x000D,
+                                       0x000E, 0x000F, 0x0010, 0x100F, 0x101A, 0x101B, 0x101C,
+                                       0x1020, 0x1021, 0x1022, 0x1023, 0x1024, 0x1025, 0x1029 };
 constexpr std::uint16_t FIRST_TRIP_BLOCK = 0x0012;  // d081
 constexpr std::uint16_t TRIP_BLOCK_SIZE = 10;
 constexpr std::uint16_t ENTER = 0x0900;
@@ -111,9 +113,12 @@ void HitachiDrive::buildModelMonitors()
   {
     addMonitor(static_cast<std::uint16_t>(number), 1, zero);  // d130, d131, d133, d153, d155
   }
-  for (std::uint16_t number = RESERVED_FIRST; number <= RESERVED_LAST; ++number)
+  for (const std::uint16_t number : RESERVED)
   {
-    addMonitor(number, 1, zero);
+    if (options_.reserved_readable)
+    {
+      addMonitor(number, 1, zero);
+    }
   }
 }
 
@@ -173,15 +178,20 @@ std::optional<std::uint16_t> HitachiDrive::readRegister(std::uint16_t number) co
 
 ModbusException HitachiDrive::readRegisters(std::uint16_t wire, std::uint16_t count, std::vector<std::uint16_t>& values)
 {
+  if (count > 1 && !options_.mapped_reads_in_blocks && mapsAny(wire + 1U, count))
+  {
+    return ModbusException::AddressNotFound;
+  }
   for (std::uint32_t number = wire + 1U; number <= static_cast<std::uint32_t>(wire) + count; ++number)
   {
-    const std::optional<std::uint16_t> value =
-        number <= 0xFFFFU ? readRegister(static_cast<std::uint16_t>(number)) : std::nullopt;
-    if (!value)
+    std::uint16_t value = 0;
+    const ModbusException exception =
+        number <= 0xFFFFU ? readMapped(static_cast<std::uint16_t>(number), value) : ModbusException::AddressNotFound;
+    if (exception != ModbusException::None)
     {
-      return ModbusException::AddressNotFound;
+      return exception;
     }
-    values.push_back(*value);
+    values.push_back(value);
   }
   return ModbusException::None;
 }
@@ -316,8 +326,9 @@ ModbusException HitachiDrive::writeRegisters(std::uint16_t wire, const std::vect
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     const std::size_t number = wire + 1U + i;
-    const ModbusException exception = number <= 0xFFFFU ? stage(static_cast<std::uint16_t>(number), values[i], change)
-                                                        : ModbusException::AddressNotFound;
+    const ModbusException exception = number <= 0xFFFFU
+                                          ? stageMapped(static_cast<std::uint16_t>(number), values[i], change)
+                                          : ModbusException::AddressNotFound;
     if (exception != ModbusException::None)
     {
       return exception;

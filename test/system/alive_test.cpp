@@ -339,7 +339,7 @@ TEST(ADriveThatRefuses, forGoodIsNoSuchDrive)
 INSTANTIATE_TEST_SUITE_P(
     Kinds, HalfAlive,
     testing::Values(
-        Ailment{ "registersLost", { "lost_reply count 0 function 3" }, "no replies to the status: " },
+        Ailment{ "registersLost", { "lost_reply count 0 function 3" }, "no long replies: " },
         Ailment{ "registersDamaged", { "damaged count 0 function 3" }, "damaged replies to the status: " },
         Ailment{ "statusRefused", { "exception 2 count 0 function 1" }, "answers exception 02 to the status" },
         Ailment{ "busyForEver", { "exception 6 count 0 function 1" }, "answers exception 06 to the status" },

@@ -51,7 +51,7 @@ class SceneWriter
 {
 public:
   SceneWriter(std::uint64_t number, const std::string& name)
-    : dice_(number * 7919U + 17U), limits_dice_(number * 104729U + 29U)
+    : dice_(number * 7919U + 17U), limits_dice_(number * 104729U + 29U), map_dice_(number * 15485863U + 41U)
   {
     scene_.name = name;
   }
@@ -252,6 +252,28 @@ private:
       // The RX's register of C078 is printed for the MX2 only: without confirmation it can't be read.
       facts.own_delay = facts.drive == "omron_mx2" ? facts.own_delay : 0.0;
     }
+    if (scene_.name == "mx2" && map_dice_.hits(0.6))
+    {
+      addMap(facts, parameters, more);
+    }
+  }
+
+  /// A register map that is in effect, one that the driver sets up and that counts from the drive's next power-on, or one that is
+  /// in other use. Dice of its own: what else happens on a bus does not depend on it.
+  void addMap(InverterFacts& facts, std::ostringstream& parameters, std::string& more)
+  {
+    facts.map = true;
+    more += ", confirm: [register_map]";
+    const double kind = map_dice_.between(0.0, 1.0);
+    if (kind < 0.4)
+    {
+      parameters << ", P200: 1, P201: 0x1005, P301: 0x1E01, P202: 0x1006, P302: 0x1F01";
+    }
+    else
+    {
+      more += ", configure_map: true";
+      parameters << (kind > 0.9 ? ", P200: 1, P201: 0x4001, P301: 0x1212" : "");
+    }
   }
 
   void setUpToshiba(InverterFacts& facts, std::ostringstream& parameters, std::string& more)
@@ -292,6 +314,7 @@ private:
 
   Dice dice_;
   Dice limits_dice_;
+  Dice map_dice_;
   bool limits_ = false;
   bool all_saturate_ = false;
   Scene scene_;

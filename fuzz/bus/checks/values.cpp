@@ -20,8 +20,9 @@ constexpr std::size_t KEPT_READS = 64;
 constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may stand beside the refresh's
 constexpr double KEPT_SAMPLES_S = 3.0;
 constexpr double OLDEST_SLOW_VALUE_S = 1.0;  // contract, section 2
-constexpr double TORQUE_TOLERANCE = 1.5;     // [%] of rated: drives report whole percents
-constexpr double MEMORY_OF_LATE_S = 2.0;     // the longest bar, and the exchange that it lets through
+constexpr double LONG_TURNING_S = 0.5;
+constexpr double TORQUE_TOLERANCE = 1.5;  // [%] of rated: drives report whole percents
+constexpr double MEMORY_OF_LATE_S = 2.0;  // the longest bar, and the exchange that it lets through
 }  // namespace
 
 Values::Values(const Observed& observed, Plant& plant)
@@ -65,6 +66,8 @@ void Values::sample(TimePoint now, std::size_t index)
 {
   std::deque<Sample>& samples = lanes_[index].samples;
   const Truth seen = plant_.truth(index);
+  std::optional<TimePoint>& since = lanes_[index].turning_since;
+  since = seen.hertz > 0.0 ? since.value_or(now) : std::optional<TimePoint>();
   if (seen.torque)
   {
     samples.push_back({ now, *seen.torque });
@@ -114,7 +117,21 @@ void Values::check(TimePoint now, const bus::InverterStatus& status)
   sample(now, status.index);
   checkStamp(now, status);
   checkFrequency(now, status);
+  checkRunning(now, status);
   checkTorque(now, status);
+}
+
+/// The run bits may be read a moment before the frequency: only a motor that has been turning for long counts.
+void Values::checkRunning(TimePoint now, const bus::InverterStatus& status) const
+{
+  const std::optional<TimePoint>& since = lanes_[status.index].turning_since;
+  const bool long_enough = since && status.has_stamp && status.stamp - *since > seconds(LONG_TURNING_S);
+  if (long_enough && !status.monitor.running.value_or(true))
+  {
+    fail(now, "a motor that turns is not shown at rest",
+         observed_.scene.title(status.index) + ": running is false, and the motor has been turning for " +
+             decimal(toSeconds(status.stamp - *since)) + " s");
+  }
 }
 
 void Values::checkStamp(TimePoint now, const bus::InverterStatus& status) const

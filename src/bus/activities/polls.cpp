@@ -24,6 +24,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
+  inverter.chooseReads(now);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);

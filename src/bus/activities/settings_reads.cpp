@@ -32,6 +32,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
     // Before a status it took the refresh's turn, and gives it back.
     turns_.finish(current, reply, current.pick.what == Pick::What::Connect);
     configureBlock(reply.finished_at, inverter);
+    configureMap(reply.finished_at, inverter);
     return;
   }
   inverter.settled(reply.finished_at, reply);
@@ -56,6 +57,26 @@ void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)
   services_.start(now, inverter.index,
                   std::make_unique<ConfigureBlockJob>(inverter.drive, inverter.config.node, wanted),
                   serviceBounds(bus_).write_parameter, AnswerCallback());
+}
+
+void SettingsReads::configureMap(TimePoint now, Inverter& inverter)
+{
+  if (bus_.shutting_down)
+  {
+    return;
+  }
+  if (const std::string refusal = inverter.map_use.takeRefusal(inverter.settings.map()); !refusal.empty())
+  {
+    bus_.outbox.log(Level::Warn, inverter.config.name + ": " + refusal);
+  }
+  const auto wanted = inverter.takeMapWrites();
+  if (wanted.empty())
+  {
+    return;
+  }
+  bus_.outbox.log(Level::Warn, inverter.config.name + ": configure_map: writing " + std::to_string(wanted.size()) +
+                                   " parameters and storing them in the drive's EEPROM, once");
+  services_.configureMap(now, inverter.index, wanted);
 }
 }  // namespace bus
 }  // namespace inverter_bus

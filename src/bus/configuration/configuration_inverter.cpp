@@ -246,6 +246,7 @@ void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& con
   config.rated_voltage = entry.number("rated_voltage", Range{ 0.0, 10000.0, true, "V" });
   config.configure_block = entry.boolean("configure_block", config.configure_block);
   config.block_read = readBlock(entry, config.block_read);
+  config.configure_map = entry.boolean("configure_map", config.configure_map);
   config.stop_unexpected_motion = entry.boolean("stop_unexpected_motion", config.stop_unexpected_motion);
   config.release_on_exit = entry.boolean("release_on_exit", config.release_on_exit);
 }
@@ -253,10 +254,17 @@ void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& con
 /// Keys that mean something to one protocol only, or contradict others.
 void checkProtocolKeys(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
 {
-  if (bus.parameters_read_only && entry.boolean("configure_block", false))
+  for (const char* key : { "configure_block", "configure_map" })
   {
-    entry.fail("configure_block", "writes parameters, and parameter_access is read_only",
-               "false, or parameter_access: read_write");
+    if (bus.parameters_read_only && entry.boolean(key, false))
+    {
+      entry.fail(key, "writes parameters, and parameter_access is read_only", "false, or parameter_access: read_write");
+    }
+  }
+  if (!profile.map && entry.boolean("configure_map", false))
+  {
+    entry.fail("configure_map", "needs a drive with a register map, and the profile " + profile.name + " has none",
+               "no configure_map here");
   }
   for (const char* key : { "configure_block", "block_read" })
   {

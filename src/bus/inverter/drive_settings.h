@@ -11,6 +11,7 @@
 
 #include "bus/inverter/connect_steps.h"
 #include "bus/inverter/drive_identity.h"
+#include "bus/inverter/map_table.h"
 #include "bus/inverter/setting_facts.h"
 #include "bus/inverter/setting_list.h"
 #include "inverter_bus/bus/types.h"
@@ -26,7 +27,8 @@ namespace bus
 class DriveSettings
 {
 public:
-  DriveSettings(const drive::Drive& drive, std::uint8_t station);
+  /// \p map_wanted: what the drive has in its register map is of interest.
+  DriveSettings(const drive::Drive& drive, std::uint8_t station, bool map_wanted = false);
 
   /// Settles everything again (the drive has come back).
   void restart();
@@ -65,6 +67,9 @@ public:
   /// Selections of the block read and write; empty before all are known, or where the drive refuses to tell.
   std::optional<BlockSlots> blockSlots() const;
 
+  /// What the drive has in its register map.
+  const MapTable& map() const;
+
   /// The drive's own communication time-out, as read or assumed; nothing: none, or not known yet.
   std::optional<Duration> driveTimeout() const;
   /// The drive's own reply delay; 0 before it is known.
@@ -82,6 +87,7 @@ private:
   SettingList settings_;
   DriveIdentity identity_;
   ConnectSteps connect_;
+  MapTable map_;
   bool leave_setup_ = false;
 };
 }  // namespace bus

@@ -32,12 +32,13 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , movement(drive, config)
   , stop(drive, config.node)
   , refresh(drive)
-  , settings(drive, config.node)
+  , settings(drive, config.node, MapUse::wanted(drive, config))
   , loopback(config.modbus_tcp)
   , link(offline_after)
   , evidence(drive)
   , motion(drive, config)
   , block_transfer(drive, config)
+  , map_use(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after)
   , setting_repeats(retries)
@@ -101,6 +102,7 @@ void Inverter::forgetDrive(bool after_silence)
   motion.forget();
   services.setupLeft();
   block_transfer.tryAgain();
+  map_use.restart();
   pauses.forget();
   movement.forgetWords();
   refresh.forget();
@@ -144,10 +146,33 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
 
 std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeBlockWrites()
 {
+  return block_transfer.takeWrites(standsStill() ? settings.blockSlots() : std::nullopt);
+}
+
+std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeMapWrites()
+{
+  return map_use.takeWrites(settings.map(), standsStill());
+}
+
+/// Its parameters may be written: the motor stands, and nobody is about to move it.
+bool Inverter::standsStill() const
+{
   const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
                        !refresh.fresh().monitor.running.value_or(true);
-  const bool may_write = at_rest && settings.identity() == Identity::Right;
-  return block_transfer.takeWrites(may_write ? settings.blockSlots() : std::nullopt);
+  return at_rest && settings.identity() == Identity::Right;
+}
+
+void Inverter::chooseReads(TimePoint now)
+{
+  if (!drive.profile().map || refresh.underWay())
+  {
+    return;
+  }
+  const drive::Monitor& seen = refresh.fresh().monitor;
+  const bool run = movement.runPossible() || seen.run_seen.value_or(false);
+  const bool at_rest = link.known() && !seen.run_seen.value_or(true) && !seen.running.value_or(true) &&
+                       seen.output_frequency.value_or(1.0) == 0.0;
+  refresh.useMap(map_use.orders(now, settings.map().fits(), run, at_rest));
 }
 
 void Inverter::dropBlock(const std::string& why)
@@ -167,6 +192,7 @@ void Inverter::noteExchange(const wire::Reply& reply)
   }
   // A short power cut may be behind it.
   refresh.slow().suspectRestart();
+  map_use.lost();
   if (drive.wears("frequency"))
   {
     // After one the drive writes set-points to its EEPROM again.
@@ -185,12 +211,20 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
+  if (const auto outcome = refresh.takeMapOutcome())
+  {
+    map_use.note(*outcome);
+  }
   evidence.statusRead(more ? refresh.words().monitor : refresh.fresh().monitor, reply, movement);
 }
 
 void Inverter::parameterWritten(const std::string& name)
 {
   settings.reread(name);
+  if (settings.map().has(name))
+  {
+    map_use.end("its parameters were changed; that counts after the drive was switched off and on");
+  }
   if (block_transfer.isSelectedBy(name))
   {
     dropBlock("its selection was changed; that counts after the drive was switched off and on");
@@ -294,6 +328,7 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   settings.restart();
   // What was selected for its block read may count only now.
   block_transfer.tryAgain();
+  map_use.restart();
   refresh.useBlock(std::nullopt);
   const bool runs_on = movement.runPossible() && !stop.pending();
   return runs_on ? "the drive has restarted (switched off and on, or reset)" : "";

@@ -17,6 +17,7 @@
 #include "bus/inverter/liveness.h"
 #include "bus/inverter/loopback_knowledge.h"
 #include "bus/inverter/lost_writes.h"
+#include "bus/inverter/map_use.h"
 #include "bus/inverter/motion_watch.h"
 #include "bus/inverter/movement.h"
 #include "bus/inverter/pauses.h"
@@ -56,6 +57,7 @@ public:
   RunEvidence evidence;
   MotionWatch motion;
   BlockTransfer block_transfer;
+  MapUse map_use;
   CommandError command_error;
   /// What came since the last complete status.
   LinkRecord record;
@@ -95,6 +97,10 @@ public:
   void settled(TimePoint now, const wire::Reply& reply);
   /// Parameters and raw values that make the block read and write fit; once, and empty where nothing is to be written now.
   std::vector<std::pair<std::string, std::uint32_t>> takeBlockWrites();
+  /// The same for the drive's register map.
+  std::vector<std::pair<std::string, std::uint32_t>> takeMapWrites();
+  /// Before each read of a refresh: what it does with the drive's register map.
+  void chooseReads(TimePoint now);
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// A parameter was written through this node.
@@ -123,6 +129,7 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
 private:
+  bool standsStill() const;
   void forgetDrive(bool after_silence);
   Judgement compare(TimePoint now, const StatusWords& words, bool complete);
   std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);

@@ -32,6 +32,43 @@ void Refresh::useBlock(const std::optional<drive::ReadBlock>& block)
   }
 }
 
+bool Refresh::underWay() const
+{
+  return !plan_.empty();
+}
+
+void Refresh::useMap(const MapOrders& orders)
+{
+  if (mapped_.take(orders))
+  {
+    reads_.change(orders.read, orders.proof);
+    slow_.restart();
+  }
+}
+
+std::optional<MapOutcome> Refresh::takeMapOutcome()
+{
+  return mapped_.takeOutcome();
+}
+
+/// Plain reads; the refresh under way starts again.
+bool Refresh::dropMap()
+{
+  plan_.clear();
+  mapped_.drop();
+  reads_.change(std::nullopt, {});
+  return true;
+}
+
+/// A read that compares was answered: it tells nothing for the status.
+bool Refresh::compared(const StatusRead& read, const wire::Reply& reply)
+{
+  drive::Monitor values;
+  drive_.decode(read.block, reply.pdu, values, ratings_);
+  mapped_.compare(!read.block.mirrors.empty(), values, draft_.words().monitor);
+  return advance();
+}
+
 const ChosenBlock& Refresh::chosen() const
 {
   return chosen_;
@@ -61,6 +98,8 @@ void Refresh::plan(TimePoint now)
   plan_ = slow_.take(reads_, now, !stamp_);
   const std::vector<std::size_t> fast = reads_.open(StatusRead::Kind::Fast, now);
   plan_.insert(plan_.end(), fast.begin(), fast.end());
+  const std::vector<std::size_t> proof = reads_.open(StatusRead::Kind::Proof, now);
+  plan_.insert(plan_.end(), proof.begin(), proof.end());
   if (plan_.empty())
   {
     // Everything is refused: keep asking for something, so that the inverter's return to health is seen.
@@ -116,12 +155,20 @@ bool Refresh::advance()
 bool Refresh::received(const wire::Reply& reply)
 {
   StatusRead& read = atHand();
+  if (read.kind == StatusRead::Kind::Proof)
+  {
+    return compared(read, reply);
+  }
   if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, fresh_.monitor))
   {
     return dropBlock();
   }
   read.values = drive::Monitor();
   drive_.decode(read.block, reply.pdu, read.values, ratings_);
+  if (!read.block.mirrors.empty() && !mapped_.accepts(read.values))
+  {
+    return dropMap();
+  }
   read.last = reply.finished_at;
   read.ever = true;
   slow_.noteRestart(read.values);
@@ -131,6 +178,14 @@ bool Refresh::received(const wire::Reply& reply)
 
 bool Refresh::refused(const wire::Reply& reply)
 {
+  if (!atHand().block.mirrors.empty())
+  {
+    const bool proof = atHand().kind == StatusRead::Kind::Proof;
+    mapped_.refused();
+    // The status of this refresh is there already, or is read plainly.
+    plan_.resize(proof ? 1 : plan_.size());
+    return proof ? advance() : dropMap();
+  }
   const bool lasting = isLastingRefusal(reply);
   if (!atHand().block.chosen.empty() && chosen_.refused(lasting))
   {
@@ -248,6 +303,7 @@ void Refresh::forget()
   complete_ = false;
   slow_.forget();
   chosen_.forget();
+  mapped_.forget();
   // Reads that were split or left out are tried in full again.
   reads_.build(std::nullopt);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bus/inverter/chosen_block.h"
+#include "bus/inverter/mapped_reads.h"
 #include "bus/inverter/slow_turns.h"
 #include "bus/inverter/status_draft.h"
 #include "bus/inverter/status_reads.h"
@@ -35,6 +36,13 @@ public:
   const ChosenBlock& chosen() const;
   /// The drive has refused the read of chosen words, or it brought something else than what was chosen; true once.
   bool takeBlockRefusal();
+
+  /// Reads of it are left.
+  bool underWay() const;
+  /// What the next refresh does with the drive's register map; none must be under way.
+  void useMap(const MapOrders& orders);
+  /// How that went; once.
+  std::optional<MapOutcome> takeMapOutcome();
 
   /// The read that is due; starts a new refresh when none is under way.
   const drive::ReadBlock& next(TimePoint now);
@@ -74,6 +82,8 @@ private:
   StatusRead& atHand();
   void plan(TimePoint now);
   bool dropBlock();
+  bool dropMap();
+  bool compared(const StatusRead& read, const wire::Reply& reply);
   bool leaveOut(const wire::Reply& reply);
   bool advance();
   bool postpone();
@@ -82,6 +92,7 @@ private:
   StatusReads reads_;
   SlowTurns slow_;
   ChosenBlock chosen_;
+  MappedReads mapped_;
   StatusDraft draft_;
   /// The reads of the refresh under way, those that are left at the end; empty: none is under way.
   std::vector<std::size_t> plan_;

@@ -78,6 +78,21 @@ void StatusReads::build(const std::optional<drive::ReadBlock>& chosen)
   }
 }
 
+void StatusReads::change(const std::optional<drive::ReadBlock>& chosen, const std::vector<drive::ReadBlock>& proof)
+{
+  const std::vector<StatusRead> before = std::move(reads_);
+  build(chosen);
+  add(proof, StatusRead::Kind::Proof);
+  for (StatusRead& read : reads_)
+  {
+    const auto old = std::find_if(before.begin(), before.end(), [&read](const StatusRead& one) {
+      return one.kind == read.kind && one.block.space == read.block.space && one.block.number == read.block.number &&
+             one.block.count == read.block.count;
+    });
+    read = old == before.end() ? read : *old;
+  }
+}
+
 void StatusReads::add(const std::vector<drive::ReadBlock>& blocks, StatusRead::Kind kind)
 {
   for (const drive::ReadBlock& block : blocks)

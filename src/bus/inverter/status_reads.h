@@ -20,6 +20,8 @@ struct StatusRead
   {
     /// Read in every refresh.
     Fast,
+    /// Compares what the drive's register map brings with plain reads; behind the fast ones.
+    Proof,
     /// Read in each refresh that shows a trip.
     Fault,
     /// Takes turns with others of its kind.
@@ -49,6 +51,8 @@ public:
 
   /// All anew and in full: \p chosen, where the drive has such a read in use, and what it doesn't bring.
   void build(const std::optional<drive::ReadBlock>& chosen);
+  /// The same while the bus goes on: \p proof are reads that compare; what slow reads have brought stays.
+  void change(const std::optional<drive::ReadBlock>& chosen, const std::vector<drive::ReadBlock>& proof);
   /// The drive refuses this read: two smaller ones take its place. False: it brings one value only, and stays.
   bool split(std::size_t index);
 

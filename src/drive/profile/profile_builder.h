@@ -29,6 +29,8 @@ void readCommands(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readStatus(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readFaults(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readBlock(YamlMap& root, const Numbering& numbering, Profile& profile);
+/// After the parameters: its table names them.
+void readMap(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readRatings(YamlMap& root, Profile& profile);
 void readParameters(YamlMap& root, const Numbering& numbering, Profile& profile);
 void readSupervision(YamlMap& root, Profile& profile);
@@ -44,6 +46,7 @@ const std::vector<std::string>& operationCodeNames();
 void checkReferences(const YamlValue& root, const Profile& profile, Problems& problems);
 void checkAbilities(const YamlValue& root, const Profile& profile, Problems& problems);
 void checkBlock(const YamlValue& root, const Profile& profile, Problems& problems);
+void checkMap(const YamlValue& root, const Profile& profile, Problems& problems);
 void checkOverlaps(const YamlValue& root, const Profile& profile, Problems& problems);
 
 /// The value at a way like "points.run" for a complaint; the nearest one above it where it doesn't exist.

@@ -121,11 +121,13 @@ void Values::check(TimePoint now, const bus::InverterStatus& status)
   checkTorque(now, status);
 }
 
-/// The run bits may be read a moment before the frequency: only a motor that has been turning for long counts.
+/// Of drives whose running bit follows the motor. It may be read a moment before the frequency: only a motor that has been
+/// turning for long counts.
 void Values::checkRunning(TimePoint now, const bus::InverterStatus& status) const
 {
   const std::optional<TimePoint>& since = lanes_[status.index].turning_since;
-  const bool long_enough = since && status.has_stamp && status.stamp - *since > seconds(LONG_TURNING_S);
+  const bool follows = observed_.scene.inverters[status.index].brand == Brand::HITACHI;
+  const bool long_enough = follows && since && status.has_stamp && status.stamp - *since > seconds(LONG_TURNING_S);
   if (long_enough && !status.monitor.running.value_or(true))
   {
     fail(now, "a motor that turns is not shown at rest",

@@ -10,6 +10,19 @@ namespace inverter_bus
 {
 namespace bus
 {
+namespace
+{
+/// What the next refresh does with the drive's register map.
+MapOrders mapOrders(TimePoint now, Inverter& inverter)
+{
+  const drive::Monitor& seen = inverter.refresh.fresh().monitor;
+  const bool run = inverter.movement.runPossible() || seen.run_seen.value_or(false);
+  const bool at_rest = inverter.link.known() && !seen.run_seen.value_or(true) && !seen.running.value_or(true) &&
+                       seen.output_frequency.value_or(1.0) == 0.0;
+  return inverter.map_use.orders(now, inverter.settings.map().fits(), run, at_rest);
+}
+}  // namespace
+
 Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences)
   : bus_(bus)
   , turns_(turns)
@@ -24,7 +37,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
-  inverter.chooseReads(now);
+  inverter.refresh.useMap([&inverter, now] { return mapOrders(now, inverter); });
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
   drive::ReadBlock block = inverter.refresh.next(now);
   current.request = inverter.drive.read(inverter.config.node, block);

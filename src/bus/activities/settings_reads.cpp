@@ -46,8 +46,9 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
 
 void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)
 {
+  const bool may_write = !bus_.shutting_down && inverter.standsStill();
   const auto wanted =
-      bus_.shutting_down ? std::vector<std::pair<std::string, std::uint32_t>>() : inverter.takeBlockWrites();
+      inverter.block_transfer.takeWrites(may_write ? inverter.settings.blockSlots() : std::optional<BlockSlots>());
   if (wanted.empty())
   {
     return;
@@ -69,7 +70,7 @@ void SettingsReads::configureMap(TimePoint now, Inverter& inverter)
   {
     bus_.outbox.log(Level::Warn, inverter.config.name + ": " + refusal);
   }
-  const auto wanted = inverter.takeMapWrites();
+  const auto wanted = inverter.map_use.takeWrites(inverter.settings.map(), inverter.standsStill());
   if (wanted.empty())
   {
     return;

@@ -144,35 +144,11 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
   refresh.useBlock(block_transfer.read(settings.blockSlots()));
 }
 
-std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeBlockWrites()
-{
-  return block_transfer.takeWrites(standsStill() ? settings.blockSlots() : std::nullopt);
-}
-
-std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeMapWrites()
-{
-  return map_use.takeWrites(settings.map(), standsStill());
-}
-
-/// Its parameters may be written: the motor stands, and nobody is about to move it.
 bool Inverter::standsStill() const
 {
   const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
                        !refresh.fresh().monitor.running.value_or(true);
   return at_rest && settings.identity() == Identity::Right;
-}
-
-void Inverter::chooseReads(TimePoint now)
-{
-  if (!drive.profile().map || refresh.underWay())
-  {
-    return;
-  }
-  const drive::Monitor& seen = refresh.fresh().monitor;
-  const bool run = movement.runPossible() || seen.run_seen.value_or(false);
-  const bool at_rest = link.known() && !seen.run_seen.value_or(true) && !seen.running.value_or(true) &&
-                       seen.output_frequency.value_or(1.0) == 0.0;
-  refresh.useMap(map_use.orders(now, settings.map().fits(), run, at_rest));
 }
 
 void Inverter::dropBlock(const std::string& why)
@@ -207,15 +183,15 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
     return;
   }
   link.dataRead();
-  if (!refresh.chosen().read() && refresh.takeBlockRefusal())
+  if (!refresh.chosen().read() && refresh.chosen().takeRefusal())
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
-  if (const auto outcome = refresh.takeMapOutcome())
+  if (const auto outcome = refresh.mapped().takeOutcome())
   {
     map_use.note(*outcome);
   }
-  evidence.statusRead(more ? refresh.words().monitor : refresh.fresh().monitor, reply, movement);
+  evidence.statusRead(more ? refresh.draft().words().monitor : refresh.fresh().monitor, reply, movement);
 }
 
 void Inverter::parameterWritten(const std::string& name)
@@ -274,7 +250,7 @@ Judgement Inverter::statusComplete(TimePoint now)
 
 Judgement Inverter::wordsRead(TimePoint now)
 {
-  return compare(now, refresh.words(), false);
+  return compare(now, refresh.draft().words(), false);
 }
 
 /// What the drive does with what it was told, and what follows for the parts of this inverter.
@@ -318,7 +294,7 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   {
     return "";
   }
-  refresh.restartNoted();
+  refresh.draft().restartNoted();
   if (restart == Restart::PerhapsBeforeRun)
   {
     settings.connectAgain();

@@ -95,12 +95,8 @@ public:
   bool connectDue(TimePoint now) const;
   /// After each exchange for its settings.
   void settled(TimePoint now, const wire::Reply& reply);
-  /// Parameters and raw values that make the block read and write fit; once, and empty where nothing is to be written now.
-  std::vector<std::pair<std::string, std::uint32_t>> takeBlockWrites();
-  /// The same for the drive's register map.
-  std::vector<std::pair<std::string, std::uint32_t>> takeMapWrites();
-  /// Before each read of a refresh: what it does with the drive's register map.
-  void chooseReads(TimePoint now);
+  /// Its parameters may be written: the motor stands, and nobody is about to move it.
+  bool standsStill() const;
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// A parameter was written through this node.
@@ -129,7 +125,6 @@ public:
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
 private:
-  bool standsStill() const;
   void forgetDrive(bool after_silence);
   Judgement compare(TimePoint now, const StatusWords& words, bool complete);
   std::string noteRestart(const drive::Monitor& words, TimePoint sent_at);

@@ -32,41 +32,18 @@ void Refresh::useBlock(const std::optional<drive::ReadBlock>& block)
   }
 }
 
-bool Refresh::underWay() const
+void Refresh::useMap(const std::function<MapOrders()>& orders)
 {
-  return !plan_.empty();
-}
-
-void Refresh::useMap(const MapOrders& orders)
-{
-  if (mapped_.take(orders))
+  if (plan_.empty() && mapped_.take(orders()))
   {
-    reads_.change(orders.read, orders.proof);
+    reads_.change(mapped_.orders().read, mapped_.orders().proof);
     slow_.restart();
   }
 }
 
-std::optional<MapOutcome> Refresh::takeMapOutcome()
+MappedReads& Refresh::mapped()
 {
-  return mapped_.takeOutcome();
-}
-
-/// Plain reads; the refresh under way starts again.
-bool Refresh::dropMap()
-{
-  plan_.clear();
-  mapped_.drop();
-  reads_.change(std::nullopt, {});
-  return true;
-}
-
-/// A read that compares was answered: it tells nothing for the status.
-bool Refresh::compared(const StatusRead& read, const wire::Reply& reply)
-{
-  drive::Monitor values;
-  drive_.decode(read.block, reply.pdu, values, ratings_);
-  mapped_.compare(!read.block.mirrors.empty(), values, draft_.words().monitor);
-  return advance();
+  return mapped_;
 }
 
 const ChosenBlock& Refresh::chosen() const
@@ -74,14 +51,21 @@ const ChosenBlock& Refresh::chosen() const
   return chosen_;
 }
 
-bool Refresh::takeBlockRefusal()
+ChosenBlock& Refresh::chosen()
 {
-  return chosen_.takeRefusal();
+  return chosen_;
 }
 
-/// Back to direct reads; the refresh under way starts again.
+/// Back to direct reads from the block or the map that is in use; the refresh under way starts again.
 bool Refresh::dropBlock()
 {
+  if (atHand().block.chosen.empty())
+  {
+    plan_.clear();
+    mapped_.drop();
+    reads_.change(std::nullopt, {});
+    return true;
+  }
   useBlock(std::nullopt);
   chosen_.drop();
   return true;
@@ -95,7 +79,7 @@ StatusRead& Refresh::atHand()
 void Refresh::plan(TimePoint now)
 {
   draft_.restart();
-  plan_ = slow_.take(reads_, now, !stamp_);
+  plan_ = slow_.take(reads_, now, !last_.stamp);
   const std::vector<std::size_t> fast = reads_.open(StatusRead::Kind::Fast, now);
   plan_.insert(plan_.end(), fast.begin(), fast.end());
   const std::vector<std::size_t> proof = reads_.open(StatusRead::Kind::Proof, now);
@@ -140,14 +124,14 @@ bool Refresh::advance()
     // Every read was refused, or every one that tells whether the motor runs: that is no status.
     return false;
   }
-  fresh_ = draft_.words();
-  if (!fresh_.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
+  last_.words = draft_.words();
+  if (!last_.words.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
   {
-    fresh_.monitor.fault_code = 0;
+    last_.words.monitor.fault_code = 0;
   }
-  slow_.noteRun(fresh_.monitor, drive_.reports("run_seen"));
+  slow_.noteRun(last_.words.monitor, drive_.reports("run_seen"));
   // Only now: a stamp belongs to a whole status, not to half of a new one beside half of an old one.
-  stamp_ = draft_.stamp();
+  last_.stamp = draft_.stamp();
   complete_ = true;
   return false;
 }
@@ -157,9 +141,12 @@ bool Refresh::received(const wire::Reply& reply)
   StatusRead& read = atHand();
   if (read.kind == StatusRead::Kind::Proof)
   {
-    return compared(read, reply);
+    drive::Monitor values;
+    drive_.decode(read.block, reply.pdu, values, ratings_);
+    mapped_.compare(!read.block.mirrors.empty(), values, draft_.words().monitor);
+    return advance();
   }
-  if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, fresh_.monitor))
+  if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, last_.words.monitor))
   {
     return dropBlock();
   }
@@ -167,7 +154,7 @@ bool Refresh::received(const wire::Reply& reply)
   drive_.decode(read.block, reply.pdu, read.values, ratings_);
   if (!read.block.mirrors.empty() && !mapped_.accepts(read.values))
   {
-    return dropMap();
+    return dropBlock();
   }
   read.last = reply.finished_at;
   read.ever = true;
@@ -184,7 +171,7 @@ bool Refresh::refused(const wire::Reply& reply)
     mapped_.refused();
     // The status of this refresh is there already, or is read plainly.
     plan_.resize(proof ? 1 : plan_.size());
-    return proof ? advance() : dropMap();
+    return proof ? advance() : dropBlock();
   }
   const bool lasting = isLastingRefusal(reply);
   if (!atHand().block.chosen.empty() && chosen_.refused(lasting))
@@ -208,12 +195,7 @@ bool Refresh::refused(const wire::Reply& reply)
     plan_.clear();
     return true;
   }
-  return leaveOut(reply);
-}
-
-/// A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
-bool Refresh::leaveOut(const wire::Reply& reply)
-{
+  // A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
   StatusRead& read = atHand();
   read.values = drive::Monitor();
   if (read.tellsRun() && !reads_.othersTellRun(plan_.front(), reply.finished_at))
@@ -266,24 +248,19 @@ bool Refresh::takeComplete()
 
 drive::Monitor Refresh::monitor(TimePoint now) const
 {
-  drive::Monitor monitor = fresh_.monitor;
+  drive::Monitor monitor = last_.words.monitor;
   reads_.addSlowValues(now, seconds(OLDEST_SLOW_VALUE_S), monitor);
   return monitor;
 }
 
 const StatusWords& Refresh::fresh() const
 {
-  return fresh_;
+  return last_.words;
 }
 
-const StatusWords& Refresh::words() const
+StatusDraft& Refresh::draft()
 {
-  return draft_.words();
-}
-
-void Refresh::restartNoted()
-{
-  draft_.restartNoted();
+  return draft_;
 }
 
 SlowTurns& Refresh::slow()
@@ -293,13 +270,13 @@ SlowTurns& Refresh::slow()
 
 const std::optional<TimePoint>& Refresh::stamp() const
 {
-  return stamp_;
+  return last_.stamp;
 }
 
 void Refresh::forget()
 {
   plan_.clear();
-  fresh_.monitor = drive::Monitor();
+  last_.words.monitor = drive::Monitor();
   complete_ = false;
   slow_.forget();
   chosen_.forget();

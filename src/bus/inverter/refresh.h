@@ -4,6 +4,7 @@
 #define INVERTER_BUS_BUS_REFRESH_H
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -34,15 +35,11 @@ public:
   /// reads. A refresh under way starts again if this changes anything.
   void useBlock(const std::optional<drive::ReadBlock>& block);
   const ChosenBlock& chosen() const;
-  /// The drive has refused the read of chosen words, or it brought something else than what was chosen; true once.
-  bool takeBlockRefusal();
+  ChosenBlock& chosen();
 
-  /// Reads of it are left.
-  bool underWay() const;
-  /// What the next refresh does with the drive's register map; none must be under way.
-  void useMap(const MapOrders& orders);
-  /// How that went; once.
-  std::optional<MapOutcome> takeMapOutcome();
+  /// Asks for what the next refresh does with the drive's register map; not while one is under way.
+  void useMap(const std::function<MapOrders()>& orders);
+  MappedReads& mapped();
 
   /// The read that is due; starts a new refresh when none is under way.
   const drive::ReadBlock& next(TimePoint now);
@@ -63,12 +60,10 @@ public:
   drive::Monitor monitor(TimePoint now) const;
   /// The run words of the last complete refresh and when their request left.
   const StatusWords& fresh() const;
-  /// The same of the refresh under way: what has come so far.
-  const StatusWords& words() const;
+  /// The refresh under way: what has come so far.
+  StatusDraft& draft();
   /// Leaves the read at hand out for a while if it is one of the slow values; false: it is not, or nothing follows it.
   bool skipSlow();
-  /// The marker of a restart that was just read is dealt with.
-  void restartNoted();
   /// What goes before all other slow values.
   SlowTurns& slow();
   /// Of the last complete refresh; empty: none since the program began.
@@ -82,9 +77,6 @@ private:
   StatusRead& atHand();
   void plan(TimePoint now);
   bool dropBlock();
-  bool dropMap();
-  bool compared(const StatusRead& read, const wire::Reply& reply);
-  bool leaveOut(const wire::Reply& reply);
   bool advance();
   bool postpone();
 
@@ -97,8 +89,13 @@ private:
   /// The reads of the refresh under way, those that are left at the end; empty: none is under way.
   std::vector<std::size_t> plan_;
   TimePoint asked_at_;
-  StatusWords fresh_;
-  std::optional<TimePoint> stamp_;
+  /// Of the last complete refresh.
+  struct Status
+  {
+    StatusWords words;
+    std::optional<TimePoint> stamp;
+  };
+  Status last_;
   drive::Ratings ratings_;
   bool run_refused_ = false;
   bool complete_ = false;

@@ -648,7 +648,6 @@ TEST(ConfigurationTest, whatResemblesAKeyAtAnyLevelIsRefused)
                                                                 { "name", "belongs into scan_list or defaults" },
                                                                 { "turnaround", "belongs into simulation" },
                                                                 { "slow_interval", "later version" },
-                                                                { "configure_map", "later version" },
                                                                 { "in_service", "later version" },
                                                                 { "parameters", "later version" },
                                                                 { "parameters_on_difference", "later version" } };

@@ -198,7 +198,7 @@ void measureCycle(Bench& bench, const Options& options)
               options.seconds, cycles.size());
   std::printf("  wire limit of the two reads per inverter       %8.1f ms\n", limit * 1e3);
   std::printf("  with the drives' turnaround of 2 ms             %8.1f ms\n", (limit + drives) * 1e3);
-  std::printf("  measured, slow values at 1 Hz included (median) %8.1f ms   ratio to the wire limit %.2f\n",
+  std::printf("  measured, slow values included (median)         %8.1f ms   ratio to the wire limit %.2f\n",
               median(cycles) * 1e3, median(cycles) / limit);
   std::printf("  shortest (a cycle without slow values)          %8.1f ms   ratio to the wire limit %.2f\n",
               *std::min_element(cycles.begin(), cycles.end()) * 1e3,

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "config/yaml.h"
+#include "drive/profile/problems.h"
 #include "inverter_bus/drive/drive.h"
 
 namespace inverter_bus
@@ -23,6 +25,19 @@ namespace drive
 inline std::string profileDirectory()
 {
   return std::string(INVERTER_BUS_ROOT) + "/config/drives";
+}
+
+/// A map of profile keys as a scan list entry at \p place would have it.
+inline config::Value overridesOf(const std::string& yaml, const std::string& place = "overrides")
+{
+  Problems problems;
+  config::Value overrides = config::readYaml(yaml, place, config::Purpose::Profile, problems).value_or(config::Value());
+  if (!problems.empty())
+  {
+    throw ConfigurationError(problems.lines().front());
+  }
+  overrides.moveTo(place);
+  return overrides;
 }
 
 inline Drive shipped(const std::string& name, const ProfileChanges& changes = ProfileChanges())

@@ -137,20 +137,21 @@ class Readme(unittest.TestCase):
 
     def testChoicesAndTheirDefaultsAreThoseOfTheCode(self):
         rows = {row[0]: row for row in table(self.scan_list, '### The bus')}
-        choices = re.findall(r'choice\("(\w+)", "(\w+)",\s*\{([^}]*)\}\)', self.configuration)
+        choices = re.findall(r'choice\("(\w+)", \{([^}]*)\},\s*"(\w+)"\)', self.configuration)
         self.assertEqual(sorted(name for name, _, _ in choices), ['parameter_access', 'protocol', 'rs485'])
-        for name, default, values in choices:
+        for name, values, default in choices:
             self.assertEqual(rows[name][2], default, name)
             self.assertEqual(re.findall(r'\w+', rows[name][3]), re.findall(r'\w+', values), name)
 
     def testRangesAreThoseOfTheCode(self):
         rows = {row[0]: row[3] for heading in ('### The bus', '### An entry of the scan list')
                 for row in table(self.scan_list, heading)}
-        integers = re.findall(r'integer\("(\w+)", bus\.\w+, (\d+), (\d+)\)', self.configuration)
+        integers = re.findall(r'integer\("(\w+)", (\d+), (\d+), bus\.\w+\)', self.configuration)
         self.assertEqual(len(integers), 4)
         for name, low, high in integers:
             self.assertEqual(rows[name], '%s to %s' % (low, high), name)
-        ranges = re.findall(r'number\("(\w+)",[^;]*?Range\{ ([\d.]+), ([\d.]+), (true|false), "(\w+)" \}', self.configuration)
+        ranges = re.findall(r'(?:number|readRating)\((?:entry, )?"(\w+)",\s*\{ ([\d.]+), ([\d.]+), (true|false), "(\w+)" \}',
+                            self.configuration)
         self.assertGreater(len(ranges), 4)
         for name, low, high, without_low, unit in ranges:
             if unit in ('A', 'V'):

@@ -14,6 +14,16 @@ namespace
 {
 using inverter_bus::config::Value;
 
+class FirstProblem : public inverter_bus::config::Complaints
+{
+public:
+  void complain(const inverter_bus::config::Spot& /*spot*/, const std::string& mistake) override
+  {
+    what = what.empty() ? mistake : what;
+  }
+  std::string what;
+};
+
 std::string quoted(const std::string& text)
 {
   std::string result = "\"";
@@ -59,9 +69,9 @@ std::string json(const Value& value)
       }
       return "[" + text + "]";
     case Value::Type::Map:
-      for (const auto& entry : value.map)
+      for (const inverter_bus::config::Entry& entry : value.map)
       {
-        text += (text.empty() ? "" : ", ") + quoted(entry.first) + ": " + json(entry.second);
+        text += (text.empty() ? "" : ", ") + quoted(entry.key) + ": " + json(entry.value);
       }
       return "{" + text + "}";
     default:
@@ -75,14 +85,11 @@ int main(int argc, char** argv)
   using namespace inverter_bus::config;
   for (int i = 1; i < argc; ++i)
   {
-    std::string error;
-    std::vector<YamlProblem> problems;
-    const auto text = readTextFile(argv[i], error);
-    const auto tree = text ? readYaml(*text, problems) : std::nullopt;
-    const Value value = tree ? toParameters(*tree, problems) : Value();
-    const bool good = text && problems.empty();
+    FirstProblem problem;
+    const auto tree = readYamlFile(argv[i], Purpose::Parameters, problem);
+    const bool good = problem.what.empty();
     std::printf("{\"%s\": %s}\n", good ? "value" : "problem",
-                good ? json(value).c_str() : quoted(text ? problems.front().what : error).c_str());
+                good ? json(tree.value_or(Value())).c_str() : quoted(problem.what).c_str());
   }
   return 0;
 }

@@ -19,8 +19,10 @@
 #include "fuzz/bus/checks/services.h"
 #include "fuzz/bus/checks/set_points.h"
 #include "fuzz/bus/checks/shutdown.h"
+#include "fuzz/bus/checks/slow_reads.h"
 #include "fuzz/bus/checks/stops.h"
 #include "fuzz/bus/checks/supervision.h"
+#include "fuzz/bus/checks/told_locks.h"
 #include "fuzz/bus/checks/trips.h"
 #include "fuzz/bus/checks/turns.h"
 #include "fuzz/bus/checks/values.h"
@@ -59,12 +61,14 @@ struct Checks
   checks::Zeros zeros;
   checks::Commands commands;
   checks::Locks locks;
+  checks::ToldLocks told_locks;
   checks::RunFrames run_frames;
   checks::SetPoints set_points;
   checks::Resets resets;
   checks::Turns turns;
   checks::BoundedVelocities bounded_velocities;
   checks::LowestClass lowest_class;
+  checks::SlowReads slow_reads;
   checks::Liveness liveness;
   checks::Probes probes;
   checks::Supervision supervision;

@@ -26,6 +26,7 @@ wire::OpenResult WatchedPort::open(std::string& error)
 bool WatchedPort::send(const wire::Bytes& frame)
 {
   watch_.sending(clock_.now(), frame);
+  on_the_way(frame);
   const bool sent = VirtualPort::send(frame);
   if (!sent)
   {
@@ -57,6 +58,17 @@ Driver::Driver(const bus::Configuration& configuration, simulation::SimulatedBus
   , loop(coordinator, line, clock, mutex)
 {
   line.setGatewayTimeout(seconds(configuration.bus.gateway_timeout));
+}
+
+std::vector<bool> Driver::locked(TimePoint now, const bus::VelocityCommand& command) const
+{
+  const bus::Report report = coordinator.report(now);
+  std::vector<bool> locked;
+  for (const auto& target : command.targets)
+  {
+    locked.push_back(report.inverters[target.first].status.locked);
+  }
+  return locked;
 }
 
 bool Driver::budgetWarns(TimePoint now, std::size_t index) const

@@ -3,8 +3,10 @@
 #ifndef INVERTER_BUS_FUZZ_DRIVER_H
 #define INVERTER_BUS_FUZZ_DRIVER_H
 
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "bus/bus_loop.h"
 #include "bus/coordinator.h"
@@ -24,6 +26,9 @@ public:
   wire::OpenResult open(std::string& error) override;
   bool send(const wire::Bytes& frame) override;
   wire::ReceiveResult receive(wire::Bytes& buffer, TimePoint deadline) override;
+
+  /// What becomes of a request on its way.
+  std::function<void(const wire::Bytes&)> on_the_way = [](const wire::Bytes&) {};
 
 private:
   AppointedClock& clock_;
@@ -45,6 +50,8 @@ struct Driver
 
   /// The node warns that it can't serve this inverter within its communication time-out.
   bool budgetWarns(TimePoint now, std::size_t index) const;
+  /// What the status of each inverter of \p command says now of its lock.
+  std::vector<bool> locked(TimePoint now, const bus::VelocityCommand& command) const;
 };
 }  // namespace fuzz
 }  // namespace inverter_bus

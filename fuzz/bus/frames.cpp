@@ -57,6 +57,13 @@ constexpr unsigned TECO_RUN_BITS = 0x0003;
 constexpr unsigned TECO_REVERSE = 0x0002;
 constexpr unsigned TECO_RESET = 0x0008;
 constexpr unsigned TECO_OUTPUT_FREQUENCY = 0x0024;
+// d090, d012 and what follows; output voltage, DC voltage, torque, alarms of the VF-S15.
+constexpr unsigned D090 = 0x004D;
+constexpr unsigned D012 = 0x100F;
+constexpr unsigned FC91 = 0xFC91;
+constexpr unsigned FD04 = 0xFD04;
+constexpr unsigned FD05 = 0xFD05;
+constexpr unsigned FD18 = 0xFD18;
 constexpr unsigned TECO_PARAMETERS = 0x0300;
 
 std::optional<std::size_t> find(const Scene& scene, unsigned node)
@@ -93,6 +100,7 @@ void readHitachi(const Bytes& frame, unsigned function, RequestFacts& facts)
   else if (function == READ_REGISTERS)
   {
     facts.reads_frequency = covers(facts.address, value, D001);
+    facts.reads_slow = facts.address == D090 || (facts.address >= D012 && facts.address < HITACHI_STATUS_END);
     facts.reads_parameter = facts.address >= HITACHI_STATUS_END;
   }
   else if (function == READ_COILS)
@@ -142,6 +150,7 @@ void readToshiba(const Bytes& frame, unsigned function, RequestFacts& facts)
     const unsigned count = modbusWord(frame, 4);
     facts.reads_frequency = facts.address == BLOCK_READ || covers(facts.address, count, FD00);
     facts.reads_run = covers(facts.address, count, FA00);
+    facts.reads_slow = facts.address == FC91 || facts.address == FD04 || facts.address == FD05 || facts.address == FD18;
     const unsigned page = facts.address >> 8U;
     facts.reads_parameter = facts.address != BLOCK_READ && page != 0xFA && page != 0xFC && page != 0xFD;
   }

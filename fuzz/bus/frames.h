@@ -34,6 +34,7 @@ struct RequestFacts
   bool reads = false;
   bool reads_frequency = false;
   bool reads_run = false;        ///< the RUN command as the drive holds it from the bus
+  bool reads_slow = false;       ///< nothing but voltages, torque, temperature, warnings
   bool reads_parameter = false;  ///< no status: settings, trip memory, parameters
   /// Tells the drive once after it has come how it is to work (VF-S15: FA87); in the lowest class, as settings are
   /// read.

@@ -11,6 +11,7 @@ namespace fuzz
 {
 namespace
 {
+constexpr double SLOW_REPLIES_LOST = 0.1;
 constexpr double SHUTDOWN_S = 15.0;  // with what comes before it
 }  // namespace
 
@@ -39,6 +40,12 @@ void Game::play(Duration duration)
   if (stage_.dice.hits(0.5))
   {
     streams_.begin(stage_.anyone());
+  }
+  if (stage_.limits_dice.hits(SLOW_REPLIES_LOST))
+  {
+    const std::size_t index = stage_.limits_dice.below(stage_.inverters());
+    world.at(seconds(toSeconds(duration) * 0.2), [&world, index] { world.loseSlowReplies(index); });
+    world.at(seconds(toSeconds(duration) * 0.95), [&world] { world.loseSlowReplies(std::nullopt); });
   }
   scheduleAct();
   world.run(duration);

@@ -47,6 +47,7 @@ void LineWatch::sending(TimePoint now, const simulation::Bytes& frame)
   checks_.bounded_velocities.check(now);
   checkCommandWords(now);
   checks_.lowest_class.check(now);
+  checks_.slow_reads.begins(now);
   checks_.values.begins(now);
 }
 
@@ -114,6 +115,7 @@ void LineWatch::endExchange(TimePoint now)
   checks_.bounded_velocities.ended();
   checks_.supervision.ended(now);
   checks_.probes.ended(now);
+  checks_.slow_reads.ended(now);
   checks_.values.ended(now);
 }
 

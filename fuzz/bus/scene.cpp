@@ -29,6 +29,9 @@ constexpr double SHORTEST_BLINDNESS_S = 2.0;  // contract, 8.15
 constexpr double TURNAROUND_S = 0.012;        // of a simulated drive at most
 constexpr double USUAL_FRAMES = 24.0;         // characters of a read and its reply
 constexpr double READS_PER_REFRESH = 4.0;
+constexpr double SLOW_FRAMES = 34.0;  // characters of the longest read of slow values and its reply
+constexpr double SLOW_READS = 6.0;    // of one inverter, settings that are repeated among them
+constexpr double SLOW_RATE = 0.045;   // what is left of 7.5 % of the wire where little may be saved up
 
 const char* const TECO_ENTRY =
     ", drive: teco_7200ma, confirm: [run_forward, fault_reset, frequency_scale, monitor_layout, fault_coding], "
@@ -51,7 +54,10 @@ class SceneWriter
 {
 public:
   SceneWriter(std::uint64_t number, const std::string& name)
-    : dice_(number * 7919U + 17U), limits_dice_(number * 104729U + 29U), map_dice_(number * 15485863U + 41U)
+    : dice_(number * 7919U + 17U)
+    , limits_dice_(number * 104729U + 29U)
+    , slow_dice_(number * 15485863U + 43U)
+    , map_dice_(number * 32452843U + 41U)
   {
     scene_.name = name;
   }
@@ -122,6 +128,8 @@ private:
     limits_ = limits_dice_.hits(0.5);
     all_saturate_ = limits_ && limits_dice_.hits(0.3);
     head_ << (all_saturate_ ? "limit: saturate\n" : "");
+    scene_.slow_interval = slow_dice_.any<double>({ 1.0, 1.0, 0.1, 2.5, 0.0 });
+    head_ << "slow_interval: " << scene_.slow_interval << "\n";
   }
 
   std::string limitsOf(InverterFacts& facts)
@@ -265,15 +273,9 @@ private:
     facts.map = true;
     more += ", confirm: [register_map]";
     const double kind = map_dice_.between(0.0, 1.0);
-    if (kind < 0.4)
-    {
-      parameters << ", P200: 1, P201: 0x1005, P301: 0x1E01, P202: 0x1006, P302: 0x1F01";
-    }
-    else
-    {
-      more += ", configure_map: true";
-      parameters << (kind > 0.9 ? ", P200: 1, P201: 0x4001, P301: 0x1212" : "");
-    }
+    const char* const fits = ", P200: 1, P201: 0x1005, P301: 0x1E01, P202: 0x1006, P302: 0x1F01";
+    more += kind < 0.4 ? "" : ", configure_map: true";
+    parameters << (kind < 0.4 ? fits : (kind > 0.9 ? ", P200: 1, P201: 0x4001, P301: 0x1212" : ""));
   }
 
   void setUpToshiba(InverterFacts& facts, std::ostringstream& parameters, std::string& more)
@@ -314,6 +316,7 @@ private:
 
   Dice dice_;
   Dice limits_dice_;
+  Dice slow_dice_;
   Dice map_dice_;
   bool limits_ = false;
   bool all_saturate_ = false;
@@ -329,6 +332,15 @@ private:
 std::string Scene::title(std::size_t index) const
 {
   return inverters[index].name + " (" + inverters[index].drive + ")";
+}
+
+Duration Scene::longestSlowPeriod() const
+{
+  const double exchange = 3.0 * toSeconds(gap()) + TURNAROUND_S + PROFILE_DELAY_S + SLOW_FRAMES * character;
+  const double needs = SLOW_READS * static_cast<double>(inverters.size()) * exchange;
+  // One goes with each refresh, and those at rest are refreshed seldom.
+  const double turns = SLOW_READS * (interval + toSeconds(longestExchange())) * idle_divisor;
+  return seconds(std::max({ slow_interval, needs / SLOW_RATE, turns }));
 }
 
 Duration Scene::gap() const

@@ -62,6 +62,7 @@ struct Scene
   bool one_brand = true;  ///< every inverter has the same profile
   double interval = 0.0;  ///< [s]
   unsigned idle_divisor = 1;
+  double slow_interval = 1.0;  ///< [s] 0: no slow value is read
   int retries = 1;
   unsigned offline_after = 3;
   std::vector<InverterFacts> inverters;
@@ -76,6 +77,8 @@ struct Scene
   double longestSilence() const;
   /// [s] after which an inverter without a complete status is offline (contract, 8.15), with what a busy bus adds.
   double longestBlindness() const;
+  /// A slow value is read at least so often on a bus without losses.
+  Duration longestSlowPeriod() const;
   /// Silence before a request.
   Duration gap() const;
 };

@@ -42,6 +42,7 @@ void StatusWatch::published(TimePoint now, const bus::InverterStatus& status)
   {
     takeLock(now, index);
   }
+  checks_.told_locks.told(now, index, status.locked);
   checks_.liveness.published(status);
   checks_.locks.tryOpen(now, index);
   checks_.recorder.published(status);
@@ -61,6 +62,7 @@ void StatusWatch::takeOffline(TimePoint now, std::size_t index)
   }
   checks_.locks.wentOffline(index);
   checks_.lowest_class.wentOffline(index);
+  checks_.slow_reads.wentOffline(index);
   checks_.stops.drop(index);
   checks_.zeros.drop(index);
   checks_.recorder.wentOffline(index);

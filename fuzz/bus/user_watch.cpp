@@ -14,9 +14,11 @@ UserWatch::UserWatch(Checks& checks) : checks_(checks)
 {
 }
 
-void UserWatch::commanded(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result)
+void UserWatch::commanded(TimePoint now, const bus::VelocityCommand& command, const std::vector<bool>& locked,
+                          std::uint16_t result)
 {
   checks_.commands.check(now, command, result);
+  checkTold(now, command, locked, result);
   const Scene& scene = checks_.observed.scene;
   // A repeat is ignored, with all that it carries for other inverters.
   const bool repeat = std::any_of(command.targets.begin(), command.targets.end(), [&](const auto& target) {
@@ -44,6 +46,21 @@ void UserWatch::commanded(TimePoint now, const bus::VelocityCommand& command, st
     {
       refuse(now, target.first, command.publisher);
     }
+  }
+}
+
+void UserWatch::checkTold(TimePoint now, const bus::VelocityCommand& command, const std::vector<bool>& locked,
+                          std::uint16_t result)
+{
+  for (std::size_t position = 0; position < locked.size(); ++position)
+  {
+    checks_.told_locks.told(now, command.targets[position].first, locked[position]);
+  }
+  const auto& target = command.targets.front();
+  // Of a group only the answer for all is known.
+  if (command.targets.size() == 1 && moves(checks_.observed.scene.inverters[target.first], target.second))
+  {
+    checks_.told_locks.check(now, target.first, command.publisher, result);
   }
 }
 

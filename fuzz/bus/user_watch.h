@@ -20,7 +20,9 @@ class UserWatch
 public:
   explicit UserWatch(Checks& checks);
 
-  void commanded(TimePoint now, const bus::VelocityCommand& command, std::uint16_t result);
+  /// \p locked what the status of each of its inverters has said of the lock just before.
+  void commanded(TimePoint now, const bus::VelocityCommand& command, const std::vector<bool>& locked,
+                 std::uint16_t result);
   /// A stop is about to be called for, of one or of all, and must be answered within \p bound [s]; what this returns is
   /// to be given the answer.
   checks::Services::Callback stopCalled(TimePoint now, std::optional<std::size_t> index, double bound);
@@ -31,6 +33,8 @@ public:
   void shutdownEnded(TimePoint now, TimePoint begun, const std::vector<std::string>& unconfirmed) const;
 
 private:
+  void checkTold(TimePoint now, const bus::VelocityCommand& command, const std::vector<bool>& locked,
+                 std::uint16_t result);
   void accept(TimePoint now, std::size_t index, double velocity, const bus::Publisher& publisher);
   void refuse(TimePoint now, std::size_t index, const bus::Publisher& publisher);
   void takeZero(TimePoint now, std::size_t index, const bus::Publisher& publisher);

@@ -137,6 +137,7 @@ void World::deliver()
 
 std::uint16_t World::command(const bus::VelocityCommand& command)
 {
+  const std::vector<bool> locked = driver_.locked(clock_.now(), command);
   const std::uint16_t result = driver_.coordinator.command(clock_.now(), command);
   digest_.commanded(clock_.now(), result);
   std::ostringstream text;
@@ -147,7 +148,7 @@ std::uint16_t World::command(const bus::VelocityCommand& command)
   }
   text << " -> " << std::hex << std::uppercase << result;
   story_.event(clock_.now(), text.str());
-  checker_.users().commanded(clock_.now(), command, result);
+  checker_.users().commanded(clock_.now(), command, locked, result);
   return result;
 }
 
@@ -183,6 +184,19 @@ void World::provoke(const std::string& command)
   checker_.glance(clock_.now());
   simulated_.command(command, clock_.now());
   checker_.glance(clock_.now());
+}
+
+void World::loseSlowReplies(std::optional<std::size_t> index)
+{
+  story_.event(clock_.now(),
+               index ? scene_.title(*index) + " is not heard when it tells slow values" : "all are heard");
+  driver_.port.on_the_way = [this, index](const wire::Bytes& frame) {
+    const RequestFacts facts = readRequest(scene_, frame);
+    if (index && facts.inverter == index && facts.reads_slow)
+    {
+      simulated_.command(scene_.inverters[*index].name + " lost_reply", clock_.now());
+    }
+  };
 }
 
 void World::cutPower(std::size_t index, double duration)

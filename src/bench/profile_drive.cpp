@@ -342,12 +342,10 @@ void ProfileDrive::move(double seconds)
 
 void ProfileDrive::change()
 {
-  const std::optional<TimePoint> lost = watchdog_.deadline(timeout());
-  if (!lost || *lost > clock())
+  if (!watchdog_.expireAt(clock(), timeout()))
   {
     return;
   }
-  watchdog_.expire();
   const drive::CommunicationLoss& loss = profile_->communication_loss;
   const drive::Parameter* action = find(loss.action_parameter);
   held_ = runCommand() && (action == nullptr || loss.runs_on.count(memory_->whole(action->item)) == 0);

@@ -28,9 +28,9 @@ void findPackage(config::Value& value, const std::string& share)
   {
     findPackage(element, share);
   }
-  for (auto& entry : value.map)
+  for (config::Entry& entry : value.map)
   {
-    findPackage(entry.second, share);
+    findPackage(entry.value, share);
   }
 }
 
@@ -42,8 +42,8 @@ void giveProfile(simulation::DriveConfig& drive, const bus::Configuration& judge
   if (known == inverters.end())
   {
     throw simulation::ConfigError(
-        "simulation/" + util::printable(drive.options.name) +
-        "/model: profile, and no scan list entry names its drive (allowed: a simulated model)");
+        "simulation." + util::printable(drive.options.name) +
+        ".model: profile, and no scan list entry names its drive (allowed: a simulated model)");
   }
   const drive::Profile& profile = judged.drives[static_cast<std::size_t>(known - inverters.begin())].profile();
   if (profile.protocol != "modbus_rtu")

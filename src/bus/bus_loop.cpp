@@ -19,6 +19,43 @@ constexpr double IN_USE_PERIOD_S = 1.0;
 constexpr double IN_USE_PATIENCE_S = 30.0;
 // Somebody may set the adapter while the bus runs.
 constexpr double ADAPTER_PERIOD_S = 5.0;
+
+/// What the coordinator may ask of a line.
+class ViewOfLine final : public LineView
+{
+public:
+  explicit ViewOfLine(const wire::Line& line) : line_(line)
+  {
+  }
+  TimePoint mayAskAt(const wire::Request& request, TimePoint now) const override
+  {
+    return line_.mayAskAt(request, now);
+  }
+  Duration cost(const wire::Request& request) const override
+  {
+    return line_.cost(request, Duration{ 0 });
+  }
+  Duration costUnanswered(const wire::Request& request) const override
+  {
+    return line_.costUnanswered(request);
+  }
+
+private:
+  const wire::Line& line_;
+};
+
+LineFacts factsOf(const wire::Line& line)
+{
+  LineFacts facts;
+  facts.counters = line.counters();
+  facts.echo_found = line.echoFound();
+  facts.gateway_quirk = line.gatewayQuirk();
+  facts.telnet_found = line.telnetFound();
+  facts.proven_since_open = line.provenSinceOpen();
+  facts.last_loss = line.lastLoss();
+  facts.peer_words = line.peerWords();
+  return facts;
+}
 }  // namespace
 
 BusLoop::BusLoop(Coordinator& coordinator, wire::Line& line, util::Clock& clock, std::mutex& mutex)
@@ -65,6 +102,7 @@ TimePoint BusLoop::openPort()
 TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error)
 {
   const TimePoint now = clock_.now();
+  coordinator_.noteLine(now, factsOf(line_));
   switch (result)
   {
     case wire::OpenResult::Opened:
@@ -116,6 +154,7 @@ bool BusLoop::reopen()
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     const TimePoint now = clock_.now();
+    coordinator_.noteLine(now, factsOf(line_));
     if (coordinator_.telnetOver(now))
     {
       coordinator_.closedForTelnet(now);
@@ -159,17 +198,17 @@ TimePoint BusLoop::step()
   {
     const std::lock_guard<std::mutex> guard(mutex_);
     const TimePoint now = clock_.now();
+    coordinator_.noteLine(now, factsOf(line_));
     for (const wire::LateReply& late : line_.takeLateReplies())
     {
       coordinator_.lateReply(now, late);
     }
-    coordinator_.noteLine(now, line_.counters(), line_.echoFound());
     if (!there)
     {
       coordinator_.portClosed(now);
       coordinator_.tick(now);
     }
-    else if ((exchange = coordinator_.next(now, wake)))
+    else if ((exchange = coordinator_.next(now, ViewOfLine(line_), wake)))
     {
       coordinator_.sent(clock_.now());
     }
@@ -186,7 +225,7 @@ TimePoint BusLoop::step()
   const wire::Reply reply = line_.exchange(exchange->request, exchange->turnaround);
   {
     const std::lock_guard<std::mutex> guard(mutex_);
-    coordinator_.noteLine(clock_.now(), line_.counters(), line_.echoFound());
+    coordinator_.noteLine(clock_.now(), factsOf(line_));
     coordinator_.done(reply);
   }
   if (reply.outcome == wire::Outcome::PortLost)

@@ -64,7 +64,7 @@ void Coordinator::noteRunning(TimePoint now)
 
 // --- the next exchange -----------------------------------------------------------------------------------------------
 
-std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint& wake)
+std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, const LineView& line, TimePoint& wake)
 {
   if (tick(now))
   {
@@ -72,7 +72,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
     wake = now;
     return std::nullopt;
   }
-  in_flight_ = chosen(now, wake);
+  in_flight_ = chosen(now, line, wake);
   if (!in_flight_)
   {
     freeze_.backBy(wake);
@@ -89,7 +89,7 @@ std::optional<Coordinator::Exchange> Coordinator::next(TimePoint now, TimePoint&
 }
 
 /// What goes now; nothing: not before \p wake.
-std::optional<InFlight> Coordinator::chosen(TimePoint now, TimePoint& wake)
+std::optional<InFlight> Coordinator::chosen(TimePoint now, const LineView& line, TimePoint& wake)
 {
   for (int attempt = 0; attempt < MOST_EMPTY_PICKS; ++attempt)
   {
@@ -102,10 +102,11 @@ std::optional<InFlight> Coordinator::chosen(TimePoint now, TimePoint& wake)
         wake = std::max(activities_.stops.earliestWatchdog(chosen.wake), now);
         return std::nullopt;
       }
-      current = compose(now, chosen);
+      current = compose(now, chosen, line);
     }
-    if (current && !activities_.telnet.mustWait(now, *current) && activities_.guard.makeSafe(now, *current))
+    if (current && !activities_.telnet.mustWait(now, *current) && activities_.guard.makeSafe(now, *current, line))
     {
+      current->cost = line.cost(current->request);
       return current;
     }
   }
@@ -121,7 +122,7 @@ Pick Coordinator::pick(TimePoint now)
   {
     return activities_.shutdown.pick(now);
   }
-  if (bus_.line.telnetFound())
+  if (bus_.line_watch.facts().telnet_found)
   {
     return activities_.telnet.pick(now);
   }
@@ -129,24 +130,24 @@ Pick Coordinator::pick(TimePoint now)
   return check ? *check : bus_.scheduler.next(now, activities_.traffic.views(now), allowed);
 }
 
-std::optional<InFlight> Coordinator::compose(TimePoint now, const Pick& pick)
+std::optional<InFlight> Coordinator::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   const Inverter& inverter = *bus_.inverters[pick.inverter];
   switch (pick.what)
   {
     case Pick::What::Stop:
-      return activities_.stops.compose(pick, pick.probe ? activities_.probes.timeout(inverter) : Duration{ 0 });
+      return activities_.stops.compose(pick, pick.probe ? activities_.probes.timeout(inverter, line) : Duration{ 0 });
     case Pick::What::Velocity:
-      return activities_.velocities.compose(now, pick);
+      return activities_.velocities.compose(now, pick, line);
     case Pick::What::Service:
       return activities_.services.compose(now, pick);
     case Pick::What::Refresh:
-      return activities_.polls.compose(now, pick);
+      return activities_.polls.compose(now, pick, line);
     case Pick::What::Connect:
     case Pick::What::Setting:
       return activities_.settings.compose(pick);
     case Pick::What::Probe:
-      return activities_.probes.compose(pick);
+      return activities_.probes.compose(pick, line);
     case Pick::What::Release:
       return activities_.shutdown.composeRelease(pick);
     default:
@@ -197,7 +198,7 @@ void Coordinator::done(const wire::Reply& reply)
   }
   if (!activities_.port.resumes(reply.finished_at, current.inverter))
   {
-    portLost(reply.finished_at);
+    activities_.port.lost(reply.finished_at);
     return;
   }
   // Lost for its station alone (contract, 8.9).

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bus/activities/activities.h"
+#include "bus/line_view.h"
 #include "bus/link/freeze_watch.h"
 #include "inverter_bus/bus/bus.h"
 
@@ -22,7 +23,7 @@ namespace bus
 class Coordinator
 {
 public:
-  /// \p configuration and \p line must outlive the coordinator; of the line only questions without side effects are asked.
+  /// \p configuration must outlive the coordinator. \p line is asked for its timing, once, and not kept.
   Coordinator(const Configuration& configuration, const wire::Line& line);
   ~Coordinator();
 
@@ -48,7 +49,8 @@ public:
     Duration turnaround{ 0 };
   };
   /// The next exchange to make right now; nothing: ask again at \p wake or when something was requested.
-  std::optional<Exchange> next(TimePoint now, TimePoint& wake);
+  /// \p line is not kept either.
+  std::optional<Exchange> next(TimePoint now, const LineView& line, TimePoint& wake);
   /// What time alone brings: command watchdogs, bounds, slow publications. Also while the port is closed. True: an inverter has just
   /// gone offline, because its status has not come for too long.
   bool tick(TimePoint now);
@@ -59,9 +61,8 @@ public:
 
   /// A reply that came after its time-out: its station is alive.
   void lateReply(TimePoint now, const wire::LateReply& late);
-  /// What the line has counted so far; kept as a copy, since others ask for it while the line is in use.
-  void noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found);
-
+  /// What the line has counted and found so far: before anything else that the line or the port has brought.
+  void noteLine(TimePoint now, const LineFacts& facts);
   /// What the open port tells of its adapter; nothing: its driver does not tell.
   void noteAdapter(const std::optional<wire::AdapterLatency>& latency);
 
@@ -70,7 +71,6 @@ public:
   void portMissing(TimePoint now, const std::string& error, bool in_use);
   /// It is being opened, which takes a while.
   void portPending(TimePoint now);
-  void portLost(TimePoint now);
   /// settle() found it gone: closed by its other end, or lost.
   void portClosed(TimePoint now);
   /// The next connection is not to be tried before this time.
@@ -102,8 +102,8 @@ public:
 private:
   void noteRunning(TimePoint now);
   Pick pick(TimePoint now);
-  std::optional<InFlight> compose(TimePoint now, const Pick& pick);
-  std::optional<InFlight> chosen(TimePoint now, TimePoint& wake);
+  std::optional<InFlight> compose(TimePoint now, const Pick& pick, const LineView& line);
+  std::optional<InFlight> chosen(TimePoint now, const LineView& line, TimePoint& wake);
   void ended(const InFlight& current, const wire::Reply& reply);
   void noteReply(const InFlight& current, const wire::Reply& reply);
   void endedBy(const InFlight& current, const wire::Reply& reply);

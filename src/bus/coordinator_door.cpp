@@ -77,9 +77,9 @@ void Coordinator::lateReply(TimePoint now, const wire::LateReply& late)
   activities_.probes.lateReply(now, late);
 }
 
-void Coordinator::noteLine(TimePoint now, const wire::LineCounters& counters, bool echo_found)
+void Coordinator::noteLine(TimePoint now, const LineFacts& facts)
 {
-  bus_.line_watch.note(now, counters, echo_found, bus_.line.gatewayQuirk());
+  bus_.line_watch.note(now, facts);
 }
 
 void Coordinator::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
@@ -105,12 +105,6 @@ void Coordinator::portPending(TimePoint now)
 {
   bus_.outbox.at(now);
   activities_.port.pending(now);
-}
-
-void Coordinator::portLost(TimePoint now)
-{
-  bus_.outbox.at(now);
-  activities_.port.lost(now);
 }
 
 void Coordinator::portClosed(TimePoint now)

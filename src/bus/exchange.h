@@ -19,12 +19,16 @@ struct InFlight
   Pick pick;
   std::size_t inverter = 0;
   wire::Request request;
+  /// Time that it occupies the line if it is answered at once.
+  Duration cost{ 0 };
   /// A loop-back that makes sure that no late reply is on its way; the real request follows.
   bool resync = false;
   /// The request is a loop-back, as a probe or for resync.
   bool loopback = false;
   /// A stop's write that a late reply to an earlier request could answer.
   bool may_be_late = false;
+  /// Takes from the share of the slow values (contract, 8.3).
+  bool slow = false;
   /// A velocity's frame that may set RUN or raise the frequency.
   bool moves = false;
   Write write;

@@ -11,10 +11,10 @@ namespace inverter_bus
 namespace config
 {
 /// What rosparam makes of rad(\p expression): numbers, pi, + - * / ** and parentheses, with Python's precedence. (rosparam
-/// evaluates any Python; nothing else makes sense in a file of numbers.) Empty: it is no such expression.
+/// evaluates any Python; nothing else makes sense in a file of numbers.) Empty: it is not such an expression.
 std::optional<double> radians(const std::string& expression);
 
-/// What rosparam makes of deg(\p number): the angle in radians. Empty: it is no number.
+/// What rosparam makes of deg(\p number): the angle in radians. Empty: it is not a number.
 std::optional<double> degrees(const std::string& number);
 }  // namespace config
 }  // namespace inverter_bus

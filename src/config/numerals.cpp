@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <limits>
 #include <locale>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 
 namespace inverter_bus
 {
@@ -100,7 +103,7 @@ WholeNumeral readWholeNumeral(const std::string& text)
   if (begins(rest, "0b") || begins(rest, "0x"))
   {
     digits = digitsOf(rest.substr(2), rest[1] == 'b' ? 2 : 16);
-    numeral.trap = rest.size() == 2 ? "is no number; allowed: a whole number" : "";
+    numeral.trap = rest.size() == 2 ? "is not a number; allowed: a whole number" : "";
   }
   else if (rest.find(':') != std::string::npos)
   {
@@ -129,6 +132,26 @@ WholeNumeral readWholeNumeral(const std::string& text)
   return numeral;
 }
 
+std::optional<std::int64_t> parseInteger(const std::string& text)
+{
+  const bool hexadecimal = text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+  const bool negative = text.size() > 1 && text[0] == '-';
+  const std::string_view digits = std::string_view(text).substr(hexadecimal ? 2 : negative ? 1 : 0);
+  const bool leading_zero = !hexadecimal && digits.size() > 1 && digits[0] == '0';
+  if (digits.empty() || digits[0] == '-' || leading_zero || digits.size() > (hexadecimal ? 8U : 10U))
+  {
+    return std::nullopt;
+  }
+  std::int64_t value = 0;
+  const char* const end = digits.data() + digits.size();
+  const auto parsed = std::from_chars(digits.data(), end, value, hexadecimal ? 16 : 10);
+  if (parsed.ec != std::errc() || parsed.ptr != end)
+  {
+    return std::nullopt;
+  }
+  return negative ? -value : value;
+}
+
 double readDecimal(const std::string& text)
 {
   std::string rest = withoutUnderscores(text);
@@ -150,7 +173,7 @@ double readDecimal(const std::string& text)
     std::istringstream stream(rest);
     stream.imbue(std::locale::classic());
     stream >> magnitude;
-    // What is too large leaves the largest number and the mark of a failure.
+    // A number that is too large leaves the largest one and the mark of a failure.
     magnitude = stream.fail() && magnitude > 1.0 ? std::numeric_limits<double>::infinity() : magnitude;
   }
   return negative ? -magnitude : magnitude;

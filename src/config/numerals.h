@@ -4,6 +4,7 @@
 #define INVERTER_BUS_SRC_CONFIG_NUMERALS_H
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace inverter_bus
@@ -16,12 +17,16 @@ struct WholeNumeral
   bool fits = true;  ///< into 64 bits
   std::int64_t integer = 0;
   double number = 0.0;
-  /// Empty, or why nobody should write it so, and what to write.
+  /// Empty, or why it should not be written like this, and what to write.
   std::string trap;
 };
 
 /// \p text of one of the forms 10, 1_0, 0x0A, 0b1010, 012, 1:30, with a sign or without.
 WholeNumeral readWholeNumeral(const std::string& text);
+
+/// An integer as keys and names spell it: decimal (12, -3) or hexadecimal (0x110A). Strict: no leading zeros (010 is octal to
+/// some readers and ten to others), no sign but '-', nothing around it, at most 32 bits.
+std::optional<std::int64_t> parseInteger(const std::string& text);
 
 /// Decimal fraction with or without exponent, '_' anywhere, .inf and .nan. Whatever the locale; too large: infinite.
 double readDecimal(const std::string& text);

@@ -82,25 +82,25 @@ bool isAngle(const std::string& text, const char* unit)
 
 void setText(Scalar& scalar)
 {
-  scalar.type = Scalar::Type::Text;
+  scalar.type = Value::Type::Text;
 }
 
 void setBoolean(Scalar& scalar, bool value)
 {
-  scalar.type = Scalar::Type::Boolean;
+  scalar.type = Value::Type::Boolean;
   scalar.boolean = value;
 }
 
 void setNumber(Scalar& scalar, double value)
 {
-  scalar.type = Scalar::Type::Number;
+  scalar.type = Value::Type::Number;
   scalar.number = value;
 }
 
 void setInteger(Scalar& scalar)
 {
   const WholeNumeral numeral = readWholeNumeral(scalar.text);
-  scalar.type = numeral.fits ? Scalar::Type::Integer : Scalar::Type::Number;
+  scalar.type = numeral.fits ? Value::Type::Integer : Value::Type::Number;
   scalar.integer = numeral.integer;
   scalar.number = numeral.number;
   scalar.trap = numeral.trap;
@@ -128,7 +128,7 @@ void setAngle(Scalar& scalar, const std::optional<double>& angle)
   setNumber(scalar, angle.value_or(0.0));
   if (!angle)
   {
-    scalar.trap = "is no angle; allowed: deg(NUMBER), or rad(...) of numbers, pi, + - * / and **";
+    scalar.trap = "is not an angle; allowed: deg(NUMBER), or rad(...) of numbers, pi, + - * / and **";
   }
 }
 
@@ -137,7 +137,7 @@ void setPlain(Scalar& scalar)
   const std::string& text = scalar.text;
   if (isNull(text))
   {
-    scalar.type = Scalar::Type::Null;
+    scalar.type = Value::Type::None;
   }
   else if (isTrue(text) || isFalse(text))
   {
@@ -177,7 +177,7 @@ void setTaggedBoolean(Scalar& scalar)
   setBoolean(scalar, isTrue(lower));
   if (!isTrue(lower) && !isFalse(lower))
   {
-    scalar.trap = "is no truth value; allowed: true, false";
+    scalar.trap = "is not a truth value; allowed: true or false";
   }
 }
 
@@ -187,7 +187,7 @@ void setTaggedNumber(Scalar& scalar, bool whole)
   if (isInteger(scalar.text))
   {
     setInteger(scalar);
-    scalar.type = whole ? scalar.type : Scalar::Type::Number;
+    scalar.type = whole ? scalar.type : Value::Type::Number;
   }
   else if (!whole && (isNumber(scalar.text) || meant))
   {
@@ -196,7 +196,7 @@ void setTaggedNumber(Scalar& scalar, bool whole)
   else
   {
     setText(scalar);
-    scalar.trap = whole ? "is no whole number; allowed: a whole number" : "is no number; allowed: a number";
+    scalar.trap = whole ? "is not a whole number; allowed: a whole number" : "is not a number; allowed: a number";
   }
 }
 
@@ -218,7 +218,7 @@ void setTagged(Scalar& scalar, const std::string& tag)
   }
   else if (kind == "null")
   {
-    scalar.type = Scalar::Type::Null;
+    scalar.type = Value::Type::None;
   }
   else if (tag == "!radians" || tag == "!degrees")
   {
@@ -277,7 +277,7 @@ std::string hintFor(const std::string& text)
     return "write " + numberInYaml(*meant);
   }
   const Scalar plain = readScalar(text);
-  if (plain.type != Scalar::Type::Text && plain.type != Scalar::Type::Null && plain.trap.empty())
+  if (plain.type != Value::Type::Text && plain.type != Value::Type::None && plain.trap.empty())
   {
     return "write " + text + " without quotes";
   }

@@ -3,40 +3,24 @@
 #ifndef INVERTER_BUS_CONFIG_SCALAR_H
 #define INVERTER_BUS_CONFIG_SCALAR_H
 
-#include <cstdint>
 #include <optional>
 #include <string>
+
+#include "inverter_bus/config/value.h"
 
 namespace inverter_bus
 {
 namespace config
 {
 /// One scalar of a YAML file, read as roslaunch reads it: PyYAML's SafeLoader (YAML 1.1) with rosparam's angles.
-struct Scalar
+struct Scalar : Value
 {
-  enum class Type
-  {
-    Null,
-    Boolean,
-    Integer,
-    Number,
-    Text
-  };
-  Type type = Type::Null;
-  bool boolean = false;
-  std::int64_t integer = 0;
-  /// Also set for integers; of those that 64 bits can't hold only this is right (and the type is Number).
-  double number = 0.0;
-  /// As written, without quotes.
-  std::string text;
-  /// In quotes, a block of text, or marked with !!str: a text whatever it looks like.
-  bool quoted = false;
-  /// Empty, or why nobody should write it so: no reader of YAML 1.1 takes it, or others take it for something else (010, 1:30),
-  /// and what to write instead.
+  /// Empty, or why it should not be written like this (no reader of YAML 1.1 accepts it, or some read it as something else: 010,
+  /// 1:30), and what to write instead.
   std::string trap;
 };
 
-/// \p tag as yaml-cpp tells it: "?" or empty: none and no quotes; "!": quotes.
+/// \p tag as yaml-cpp reports it: "?" or empty: none and no quotes; "!": quotes.
 Scalar readScalar(const std::string& text, const std::string& tag = "?");
 
 /// The number that \p text means to people and to most programs, although it is a text to YAML 1.1: 1e2, 5e-3, 1.5e3, +.5.
@@ -46,7 +30,7 @@ std::optional<double> meantNumber(const std::string& text);
 /// What to write in place of a text where a number or a truth value is wanted: "write 100.0", "write 8", ...; empty: no idea.
 std::string hintFor(const std::string& text);
 
-/// \p number so that every reader of YAML takes it for a number and for the same one: 100.0, 0.005, 1.0e-10.
+/// \p number so that every reader of YAML reads it as a number, and as the same one: 100.0, 0.005, 1.0e-10.
 std::string numberInYaml(double number);
 }  // namespace config
 }  // namespace inverter_bus

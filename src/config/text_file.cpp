@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
+#include "config/text_file.h"
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>

@@ -3,11 +3,16 @@
 #include "config/yaml.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
+#include "config/scalar.h"
+#include "config/text_file.h"
 #include "config/yaml_text.h"
 #include "util/printable.h"
 
@@ -19,14 +24,14 @@ namespace
 {
 /// Deeper than any file of this package; an alias that contains itself would have no bottom.
 constexpr int DEEPEST = 20;
-/// More than any file of this package; a few nested aliases can stand for billions of values.
+/// More than any file of this package; a few nested aliases can make billions of values.
 constexpr std::size_t MOST_VALUES = 200000;
 
 /// 0x21, 33 and '33' are the same key.
 std::string canonical(const Scalar& key)
 {
   const Scalar plain = key.quoted ? readScalar(key.text) : key;
-  return plain.type == Scalar::Type::Integer ? std::to_string(plain.integer) : key.text;
+  return plain.type == Value::Type::Integer ? std::to_string(plain.integer) : key.text;
 }
 
 std::string below(const std::string& path, const std::string& key)
@@ -37,23 +42,24 @@ std::string below(const std::string& path, const std::string& key)
 class Reader
 {
 public:
-  explicit Reader(std::vector<YamlProblem>& problems) : problems_(problems)
+  Reader(const std::string& source, Purpose purpose, Complaints& complaints)
+    : source_(source), for_parameters_(purpose == Purpose::Parameters), complaints_(complaints)
   {
   }
 
-  YamlNode read(const YAML::Node& node, const std::string& path, int depth)
+  Value read(const YAML::Node& node, const std::string& path, const std::string& place, int depth)
   {
-    YamlNode result;
-    result.line = lineOf(node);
+    Value result;
+    result.place = place;
     if (depth > DEEPEST || ++values_ > MOST_VALUES)
     {
-      giveUp(result.line, path, depth > DEEPEST ? "nested too deeply" : "too many values");
+      giveUp(place, path, depth > DEEPEST ? "nested too deeply" : "too many values");
       return result;
     }
     switch (node.Type())
     {
       case YAML::NodeType::Scalar:
-        readLeaf(node, path, result);
+        result = readLeaf(node, path, place);
         break;
       case YAML::NodeType::Sequence:
         checkTag(node, path, "tag:yaml.org,2002:seq");
@@ -66,25 +72,36 @@ public:
       default:
         break;
     }
+    if (for_parameters_ && !given_up_)
+    {
+      checkParameter(result, path);
+    }
     return result;
   }
 
+  std::string placeOfLine(int line) const
+  {
+    return line <= 0         ? source_
+           : source_.empty() ? "line " + std::to_string(line)
+                             : source_ + ":" + std::to_string(line);
+  }
+
 private:
-  static int lineOf(const YAML::Node& node)
+  std::string placeOf(const YAML::Node& node) const
   {
-    return node.Mark().line + 1;
+    return placeOfLine(node.Mark().line + 1);
   }
 
-  void add(int line, const std::string& path, const std::string& what)
+  void add(const std::string& place, const std::string& path, const std::string& what)
   {
-    problems_.push_back({ line, path, what });
+    complaints_.complain({ place, path }, what);
   }
 
-  void giveUp(int line, const std::string& path, const std::string& what)
+  void giveUp(const std::string& place, const std::string& path, const std::string& what)
   {
     if (!given_up_)
     {
-      add(line, path, what);
+      add(place, path, what);
     }
     given_up_ = true;
   }
@@ -94,137 +111,182 @@ private:
     const std::string& tag = node.Tag();
     if (!tag.empty() && tag != "?" && tag != "!" && tag != allowed)
     {
-      add(lineOf(node), path, "has the tag " + util::printable(tag) + ": allowed: no tag");
+      add(placeOf(node), path, "has the tag " + util::printable(tag) + ": allowed: no tag");
     }
   }
 
-  void readLeaf(const YAML::Node& node, const std::string& path, YamlNode& result)
+  Value readLeaf(const YAML::Node& node, const std::string& path, const std::string& place)
   {
-    result.scalar = readScalar(node.Scalar(), node.Tag());
-    if (!result.scalar.trap.empty())
+    Scalar scalar = readScalar(node.Scalar(), node.Tag());
+    scalar.place = place;
+    if (!scalar.trap.empty())
     {
-      add(result.line, path, "value '" + util::printable(result.scalar.text) + "' " + result.scalar.trap);
+      add(place, path, "value '" + util::printable(scalar.text) + "' " + scalar.trap);
+    }
+    return scalar;
+  }
+
+  /// What the parameter server can't carry.
+  void checkParameter(const Value& value, const std::string& path)
+  {
+    constexpr std::int64_t LOWEST = std::numeric_limits<std::int32_t>::min();
+    constexpr std::int64_t HIGHEST = std::numeric_limits<std::int32_t>::max();
+    if (value.type == Value::Type::None)
+    {
+      add(value.place, path,
+          "has no value, and roslaunch can't load that: allowed: a value (# begins a comment: put a text that has one "
+          "in "
+          "quotes), or leave the key out");
+    }
+    if (value.type == Value::Type::Integer && (value.integer < LOWEST || value.integer > HIGHEST))
+    {
+      add(value.place, path,
+          "value " + std::to_string(value.integer) +
+              " has more than 32 bits, and roslaunch can't load that: allowed: " + std::to_string(LOWEST) + " to " +
+              std::to_string(HIGHEST) + "; a bit mask with station 31 in quotes, '0x80000002'");
     }
   }
 
-  void readList(const YAML::Node& node, const std::string& path, int depth, YamlNode& result)
+  void readList(const YAML::Node& node, const std::string& path, int depth, Value& result)
   {
-    result.kind = YamlNode::Kind::List;
+    result.type = Value::Type::List;
     for (std::size_t i = 0; i < node.size() && !given_up_; ++i)
     {
-      result.items.push_back(read(node[i], path + "[" + std::to_string(i) + "]", depth + 1));
+      result.list.push_back(read(node[i], path + "[" + std::to_string(i) + "]", placeOf(node[i]), depth + 1));
     }
   }
 
-  void readMap(const YAML::Node& node, const std::string& path, int depth, YamlNode& result)
+  void readMap(const YAML::Node& node, const std::string& path, int depth, Value& result)
   {
-    result.kind = YamlNode::Kind::Map;
+    result.type = Value::Type::Map;
     std::set<std::string> seen;
-    std::vector<YamlEntry> merged;
+    std::vector<Entry> merged;
     for (auto pair = node.begin(); pair != node.end() && !given_up_; ++pair)
     {
-      YamlEntry entry;
-      if (!readKey(pair->first, path, entry))
+      const std::string place = placeOf(pair->first);
+      const std::optional<Scalar> key = readKey(pair->first, path);
+      if (!key)
       {
         continue;
       }
-      const std::string entry_path = below(path, entry.key.text);
-      if (!seen.insert(canonical(entry.key)).second)
+      const std::string entry_path = below(path, key->text);
+      if (!seen.insert(canonical(*key)).second)
       {
-        add(entry.line, entry_path, "duplicate key: allowed once");
+        add(place, entry_path, "duplicate key: allowed once");
         continue;
       }
-      entry.value = read(pair->second, entry_path, depth + 1);
-      if (!entry.key.quoted && entry.key.text == "<<")
+      // A map or an empty value is on the line after its key for yaml-cpp; people look for the key.
+      Entry entry{ key->text, read(pair->second, entry_path, place, depth + 1) };
+      if (!key->quoted && key->text == "<<")
       {
-        collectMerged(entry, path, merged);
+        collectMerged(entry.value, path, merged);
         continue;
       }
-      // A map or an empty value "stands" on the line after its key for yaml-cpp; people look for the key.
-      entry.value.line = entry.line;
-      result.entries.push_back(std::move(entry));
+      result.map.push_back(std::move(entry));
     }
     merge(merged, seen, result);
+    if (for_parameters_)
+    {
+      std::sort(result.map.begin(), result.map.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    }
   }
 
-  bool readKey(const YAML::Node& node, const std::string& path, YamlEntry& entry)
+  std::optional<Scalar> readKey(const YAML::Node& node, const std::string& path)
   {
-    entry.line = lineOf(node);
     if (!node.IsScalar())
     {
-      add(entry.line, path, "a key must be a plain word or number: allowed: key: value");
-      return false;
+      add(placeOf(node), path, "a key must be a plain word or number: allowed: key: value");
+      return std::nullopt;
     }
-    entry.key = readScalar(node.Scalar(), node.Tag());
-    const bool merges = entry.key.text == "<<" || entry.key.text == "=";
-    if (!entry.key.trap.empty() && !merges)
+    Scalar key = readScalar(node.Scalar(), node.Tag());
+    const std::string shown = util::printable(key.text);
+    const bool merges = key.text == "<<" || key.text == "=";
+    if (!key.trap.empty() && !merges)
     {
-      add(entry.line, below(path, entry.key.text),
-          "the key '" + util::printable(entry.key.text) + "' " + entry.key.trap);
+      add(placeOf(node), below(path, key.text), "the key '" + shown + "' " + key.trap);
     }
-    return true;
+    if (for_parameters_ && key.type != Value::Type::Text)
+    {
+      add(placeOf(node), below(path, key.text),
+          "the key '" + shown + "' is not a text, and roslaunch can load no others: allowed: '" + shown +
+              "' in quotes");
+    }
+    return key;
   }
 
-  /// The maps behind `<<`: those that stand first win.
-  void collectMerged(const YamlEntry& entry, const std::string& path, std::vector<YamlEntry>& merged)
+  /// The maps behind `<<`: the first ones win.
+  void collectMerged(const Value& value, const std::string& path, std::vector<Entry>& merged)
   {
-    const YamlNode& value = entry.value;
-    const bool several = value.kind == YamlNode::Kind::List;
-    const std::vector<YamlNode> one{ value };
-    for (const YamlNode& map : several ? value.items : one)
+    const std::vector<Value> one{ value };
+    for (const Value& map : value.type == Value::Type::List ? value.list : one)
     {
-      if (map.kind != YamlNode::Kind::Map)
+      if (map.type != Value::Type::Map)
       {
-        add(entry.line, below(path, "<<"),
-            "merges something else than a map: allowed: *NAME of a map, or a list of those");
+        add(value.place, below(path, "<<"),
+            "merges something other than a map: allowed: *NAME of a map, or a list of them");
         return;
       }
-      merged.insert(merged.end(), map.entries.begin(), map.entries.end());
+      merged.insert(merged.end(), map.map.begin(), map.map.end());
     }
   }
 
-  /// The map's own keys go before those that are merged into it, wherever they stand.
-  static void merge(std::vector<YamlEntry>& merged, std::set<std::string>& seen, YamlNode& result)
+  /// The map's own keys go before those that are merged into it, wherever they are.
+  static void merge(std::vector<Entry>& merged, std::set<std::string>& seen, Value& result)
   {
-    for (YamlEntry& entry : merged)
+    for (Entry& entry : merged)
     {
-      if (seen.insert(canonical(entry.key)).second)
+      if (seen.insert(canonical(readScalar(entry.key))).second)
       {
-        result.entries.push_back(std::move(entry));
+        result.map.push_back(std::move(entry));
       }
     }
   }
 
-  std::vector<YamlProblem>& problems_;
+  const std::string source_;
+  const bool for_parameters_;
+  Complaints& complaints_;
   std::size_t values_ = 0;
   bool given_up_ = false;
 };
 }  // namespace
 
-std::optional<YamlNode> readYaml(const std::string& text, std::vector<YamlProblem>& problems)
+std::optional<Value> readYaml(const std::string& text, const std::string& source, Purpose purpose,
+                              Complaints& complaints)
 {
-  if (const auto problem = problemOfText(text))
-  {
-    problems.push_back(*problem);
-    return std::nullopt;
-  }
+  Reader reader(source, purpose, complaints);
+  std::optional<TextProblem> problem = problemOfText(text);
   try
   {
-    const int documents = countDocuments(text);
+    const int documents = problem ? 1 : countDocuments(text);
     if (documents != 1)
     {
-      problems.push_back(
-          { 0, "",
-            documents == 0 ? "is empty: allowed: one YAML document" : "holds several YAML documents: allowed: one" });
-      return std::nullopt;
+      problem = TextProblem{ 0, documents == 0 ? "is empty: allowed: one YAML document"
+                                               : "holds several YAML documents: allowed: one" };
     }
-    return Reader(problems).read(YAML::Load(text), "", 0);
+    if (!problem)
+    {
+      const YAML::Node root = YAML::Load(text);
+      return reader.read(root, "", reader.placeOfLine(root.Mark().line + 1), 0);
+    }
   }
   catch (const YAML::Exception& exception)
   {
-    problems.push_back({ exception.mark.line + 1, "", "not valid YAML: " + exception.msg });
+    problem = TextProblem{ exception.mark.line + 1, "not valid YAML: " + exception.msg };
+  }
+  complaints.complain({ reader.placeOfLine(problem->line), "" }, problem->what);
+  return std::nullopt;
+}
+
+std::optional<Value> readYamlFile(const std::string& path, Purpose purpose, Complaints& complaints)
+{
+  std::string error;
+  const auto text = readTextFile(path, error);
+  if (!text)
+  {
+    complaints.complain({ path, "" }, error);
     return std::nullopt;
   }
+  return readYaml(*text, path, purpose, complaints);
 }
 }  // namespace config
 }  // namespace inverter_bus

@@ -80,7 +80,7 @@ private:
     }
   }
 
-  /// One character of a word, or of what stands between words.
+  /// One character of a word, or between words.
   void move(char c)
   {
     const bool last =
@@ -147,7 +147,7 @@ private:
     in_word_ = false;
   }
 
-  /// Lines that are empty or stand further right than the key of the block.
+  /// Lines that are empty or further right than the key of the block.
   void skipBlock()
   {
     in_word_ = false;
@@ -171,7 +171,7 @@ private:
   bool line_start_ = true;
   /// A word may begin here.
   bool word_start_ = true;
-  /// What stands before is an unquoted text, which the next line may go on with.
+  /// Behind an unquoted text, which may continue on the next line.
   bool in_word_ = false;
   /// Of the key that a block of text would belong to.
   std::size_t column_ = 0;

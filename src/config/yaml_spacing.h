@@ -9,10 +9,10 @@ namespace inverter_bus
 {
 namespace config
 {
-/// What PyYAML, and with it roslaunch, refuses and yaml-cpp passes over; lines from 1, 0: there is none.
+/// Mistakes that PyYAML, and with it roslaunch, refuses and yaml-cpp ignores; lines from 1, 0: there is none.
 struct SpacingMistakes
 {
-  int tab = 0;         ///< the first tab that stands neither in quotes, nor in a comment, nor in a block of text
+  int tab = 0;         ///< the first tab that is neither in quotes, nor in a comment, nor in a block of text
   int open_quote = 0;  ///< quotes that never close
 };
 

@@ -10,6 +10,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "config/yaml.h"
 #include "config/yaml_spacing.h"
 #include "util/utf8.h"
 
@@ -121,28 +122,28 @@ int lineOfUnprintable(const std::string& yaml)
 }
 }  // namespace
 
-std::optional<YamlProblem> problemOfText(const std::string& yaml)
+std::optional<TextProblem> problemOfText(const std::string& yaml)
 {
   if (yaml.size() > LARGEST_YAML)
   {
-    return YamlProblem{ 0, "", "is larger than 1 MiB" };
+    return TextProblem{ 0, "is larger than 1 MiB" };
   }
   if (depthOf(yaml) > DEEPEST)
   {
-    return YamlProblem{ 0, "", "nested too deeply" };
+    return TextProblem{ 0, "nested too deeply" };
   }
   if (const int line = lineOfUnprintable(yaml))
   {
-    return YamlProblem{ line, "", "not valid YAML: a control character, or bytes that are no UTF-8" };
+    return TextProblem{ line, "not valid YAML: a control character, or bytes that are not UTF-8" };
   }
   const SpacingMistakes spacing = findSpacingMistakes(yaml);
   if (spacing.tab > 0)
   {
-    return YamlProblem{ spacing.tab, "", "not valid YAML: a tab between words: allowed: spaces" };
+    return TextProblem{ spacing.tab, "not valid YAML: a tab between words: allowed: spaces" };
   }
   if (spacing.open_quote > 0)
   {
-    return YamlProblem{ spacing.open_quote, "", "not valid YAML: quotes that begin here don't end" };
+    return TextProblem{ spacing.open_quote, "not valid YAML: the quotes that are opened here are never closed" };
   }
   return std::nullopt;
 }

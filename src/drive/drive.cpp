@@ -53,7 +53,7 @@ std::vector<ReadBlock> planStatus(const Profile& profile, Pace pace, const std::
   return planReads(items, profile);
 }
 
-/// A drive that tells nothing is still asked for something: it must hear the bus, and the bus must hear it.
+/// A drive that reports nothing is still asked for something: it must hear the bus, and the bus must hear it.
 std::vector<ReadBlock> planFast(const Profile& profile)
 {
   std::vector<ReadBlock> blocks = planStatus(profile, Pace::Fast);
@@ -66,7 +66,7 @@ std::vector<ReadBlock> planFast(const Profile& profile)
 
 std::optional<ReadBlock> planRunRead(const Profile& profile)
 {
-  // Not `running`: a motor that still ramps down after a stop is no RUN.
+  // Not `running`: a motor that still ramps down after a stop is not a RUN.
   const auto found = profile.status.find("run_seen");
   if (found == profile.status.end() || !usable(found->second))
   {
@@ -109,7 +109,7 @@ void decodeCode(const std::string& field, std::uint32_t raw, Monitor& monitor)
   }
 }
 
-/// In SI units; empty where the drive counts in percent of a rating that nobody knows.
+/// In SI units; empty where the drive counts in percent of an unknown rating.
 std::optional<double> quantity(const Item& item, std::uint32_t raw, const Ratings& ratings)
 {
   const double value = scaled(item, raw);
@@ -275,7 +275,7 @@ std::string Drive::missingFor(const std::string& name) const
   collectMissing(name, profile_, missing);
   if ((name == "forward" || name == "reverse") && profile_.sequences.count(name) != 0)
   {
-    // What can't be stopped for certain must not be set running.
+    // A motor that can't be stopped for certain must not be started.
     collectMissing("stop", profile_, missing);
   }
   return util::joined(missing);
@@ -308,7 +308,7 @@ std::string Drive::unconfirmedText() const
   return profile_.unconfirmed.empty()
              ? ""
              : util::joined(profile_.unconfirmed) + "; " + adviceFor(profile_.unconfirmed) +
-                   (unneeded.empty() ? "" : "; what nobody needs can be left out: skip: [" + unneeded + "]");
+                   (unneeded.empty() ? "" : "; fields that are not needed can be left out: skip: [" + unneeded + "]");
 }
 
 /// Names for `skip` in which something is unconfirmed.
@@ -339,7 +339,7 @@ std::string Drive::skippableUnconfirmed() const
   return util::joined(names);
 }
 
-/// A value that is known but unproven is confirmed; one that nobody knows is given.
+/// A value that is known but unproven must be confirmed; one that is unknown must be set.
 std::string Drive::adviceFor(const std::set<std::string>& marks) const
 {
   std::string known;
@@ -355,11 +355,11 @@ std::string Drive::adviceFor(const std::set<std::string>& marks) const
       continue;
     }
     unknown += (unknown.empty() ? "'" : ", '") + constant->first + "'";
-    unknown += constant->second.where.empty() ? "" : " (it stands on " + constant->second.where + ")";
+    unknown += constant->second.where.empty() ? "" : " (see " + constant->second.where + ")";
   }
   std::string advice = known.empty() ? "" : "check " + known + " in the drive's manual or on the drive, then confirm";
   advice += advice.empty() || unknown.empty() ? "" : "; ";
-  return advice + (unknown.empty() ? "" : "give under overrides " + unknown);
+  return advice + (unknown.empty() ? "" : "set " + unknown + " under overrides");
 }
 
 wire::Request Drive::command(std::uint8_t station, const Step& step, std::uint32_t setpoint) const
@@ -452,7 +452,7 @@ std::string Drive::decodeModel(const wire::Bytes& reply) const
   constexpr std::size_t MODEL = 10;  // characters, padded with spaces
   std::string model = responseData(READ_ATTRIBUTES, reply).value_or("").substr(0, MODEL);
   model.erase(model.find_last_not_of(' ') + 1);
-  // ROS messages want UTF-8, and a damaged byte is no letter.
+  // ROS messages want UTF-8, and a damaged byte is not a letter.
   std::replace_if(
       model.begin(), model.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return model;

@@ -6,7 +6,6 @@
 
 #include "drive/codec/codec.h"
 #include "drive/codec/read_plan.h"
-#include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
 #include "util/text.h"
 

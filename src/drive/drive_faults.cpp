@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-// The part of Drive that knows why the motor stands: trip memory, warnings, exceptions.
+// The part of Drive that knows why the motor has stopped: trip memory, warnings, exceptions.
 
 #include <string>
 #include <vector>
 
 #include "drive/codec/codec.h"
 #include "drive/codec/read_plan.h"
-#include "drive/profile/numbers.h"
 #include "drive/profile/status_fields.h"
 #include "inverter_bus/drive/drive.h"
 #include "util/text.h"
@@ -104,7 +103,7 @@ std::string Drive::tripText(const Monitor& monitor) const
     return "trip " + std::to_string(code) + ": " + (code == 0 ? "no reason given" : faultText(code));
   }
   return "unknown state " + std::to_string(*monitor.unknown_trip) + " (" + util::hexNumber(*monitor.unknown_trip) +
-         ") of faulted, which stands in no table and counts as a trip" +
+         ") of faulted, which is in no table and counts as a trip" +
          (code == 0 ? "" : "; trip " + std::to_string(code) + ": " + faultText(code));
 }
 

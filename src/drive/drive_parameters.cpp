@@ -7,6 +7,7 @@
 #include <limits>
 #include <regex>
 
+#include "config/numerals.h"
 #include "drive/codec/codec.h"
 #include "drive/profile/numbers.h"
 #include "inverter_bus/drive/drive.h"
@@ -63,7 +64,7 @@ std::optional<Parameter> rawRegister(const std::string& name, const Profile& pro
   {
     return rawVariable(name);
   }
-  const auto number = parseInteger(name);
+  const auto number = config::parseInteger(name);
   if (!number || *number > 0xFFFF || *number < profile.first_register)
   {
     return std::nullopt;
@@ -106,7 +107,7 @@ std::string outside(const Parameter& parameter, double value, double lowest, dou
 std::string betweenCounts(const Parameter& parameter, double value, double counts)
 {
   const Item& item = parameter.item;
-  return parameter.name + ": " + withUnit(value, item) + " is no multiple of the resolution " +
+  return parameter.name + ": " + withUnit(value, item) + " is not a multiple of the resolution " +
          withUnit(item.resolution, item) + ": the nearest are " +
          util::exactText(scaleCounts(std::floor(counts), item.resolution)) + " and " +
          withUnit(scaleCounts(std::ceil(counts), item.resolution), item);
@@ -124,7 +125,7 @@ std::string refusal(const Parameter& parameter, double value, double counts)
   const Item& item = parameter.item;
   if (parameter.read_only)
   {
-    return parameter.name + " is read only";
+    return parameter.name + " is read-only";
   }
   if (!std::isfinite(value))
   {
@@ -182,11 +183,11 @@ std::string Drive::parameterRefusal(const std::string& name, bool for_write) con
   }
   if (profile_.parameters.count(name) != 0)
   {
-    return "parameter " + name + " is read only";
+    return "parameter " + name + " is read-only";
   }
   if (isPlace(name))
   {
-    return for_write ? "register numbers are for reading only: a write needs a name of the profile"
+    return for_write ? "register numbers are for reading only: a write needs a name from the profile"
                      : "register " + name + " does not exist";
   }
   return "parameter " + name + " is not in the profile " + profile_.name;

@@ -11,7 +11,7 @@ namespace inverter_bus
 {
 namespace ros_node
 {
-/// What a node that takes nothing but ROS's own arguments says instead of starting.
+/// The answer of a node that takes nothing but ROS's own arguments, in place of starting.
 struct CommandLineAnswer
 {
   int status = 0;

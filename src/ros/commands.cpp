@@ -82,7 +82,7 @@ std::uint32_t Commands::groupPublishers() const
   return group_subscriber_.getNumPublishers();
 }
 
-/// After subscribing and before the first callback: whoever is not listed now came later than this node.
+/// After subscribing and before the first callback: a publisher that is not listed now came later than this node.
 void Commands::askForPublishers()
 {
   const std::map<std::string, std::set<std::string>> publishers = publishersByTopic();

@@ -25,7 +25,7 @@ public:
   /// \param there_before names of the nodes that published the topic when we subscribed
   void setThereBefore(const std::set<std::string>& there_before);
 
-  /// Who sent the message that came with \p header.
+  /// The publisher of the message that came with \p header.
   bus::Publisher identify(const boost::shared_ptr<ros::M_string>& header);
 
 private:

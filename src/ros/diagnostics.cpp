@@ -44,14 +44,14 @@ void addValues(const std::vector<std::pair<std::string, std::string>>& values, E
   }
 }
 
-/// Two masters on one topic: the drive follows whoever spoke last.
+/// Two masters on one topic: the drive follows the one that spoke last.
 void addPublishers(std::uint32_t publishers, const std::string& topic, std::vector<bus::Finding>& findings)
 {
   if (publishers > 1)
   {
     const std::string name = ros::names::resolve("~" + topic);
     findings.push_back({ bus::Level::Warn, std::to_string(publishers) + " publishers on " + name +
-                                               ": leave one of them (rostopic info " + name + ")" });
+                                               ": keep only one of them (rostopic info " + name + ")" });
   }
 }
 

@@ -20,7 +20,7 @@ namespace inverter_bus
 {
 namespace ros_node
 {
-/// Publishes /diagnostics at 1 Hz from a thread of its own on the steady clock: also when the bus or ROS time stand still.
+/// Publishes /diagnostics at 1 Hz from a thread of its own on the steady clock: also when the bus or ROS time stops.
 class Diagnostics
 {
 public:
@@ -51,7 +51,7 @@ private:
   std::thread thread_;
 };
 
-/// Level and text of an entry: the worst findings, what is in order otherwise.
+/// Level and text of an entry: the worst findings; without any, that all is well.
 void summarize(const std::vector<bus::Finding>& findings, const std::string& in_order,
                diagnostic_updater::DiagnosticStatusWrapper& entry);
 }  // namespace ros_node

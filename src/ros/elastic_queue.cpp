@@ -18,7 +18,7 @@ constexpr std::size_t THREADS_KEPT = 4;
 /// Enough for a service callback with logging, small enough for hundreds of threads.
 constexpr std::size_t STACK_SIZE = std::size_t{ 512 } * 1024;
 
-/// What this thread is executing, so that a callback that removes its own owner does not wait for itself.
+/// The callback that this thread executes, so that a callback that removes its own owner does not wait for itself.
 thread_local const ElasticQueue* executing_queue = nullptr;
 thread_local std::uint64_t executing_owner = 0;
 }  // namespace
@@ -30,7 +30,7 @@ ElasticQueue::ElasticQueue(std::size_t most_threads) : most_threads_(std::max<st
   grow();
 }
 
-// NOLINTNEXTLINE(bugprone-exception-escape): join() throws for interrupted threads, and nobody interrupts them
+// NOLINTNEXTLINE(bugprone-exception-escape): join() throws for interrupted threads, and none is ever interrupted
 ElasticQueue::~ElasticQueue()
 {
   shutdown();
@@ -53,7 +53,7 @@ void ElasticQueue::addCallback(const ros::CallbackInterfacePtr& callback, std::u
       }
       catch (const boost::thread_resource_error&)
       {
-        // The system has no more threads: one of ours takes it when it is free.
+        // The system has no more threads: a running one takes it when it is free.
       }
     }
   }

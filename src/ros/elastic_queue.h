@@ -42,7 +42,7 @@ public:
 
   /// True when nothing waited or ran any more within \p timeout.
   bool waitIdle(Duration timeout);
-  /// Drops what waits, takes nothing more, and returns when what runs has ended.
+  /// Drops waiting callbacks, takes no more, and returns when the running ones have ended.
   void shutdown();
 
   /// Threads that exist now.
@@ -67,7 +67,7 @@ private:
   const std::size_t most_threads_;
   mutable std::mutex mutex_;
   util::SteadyCondition work_;     ///< for the threads of the pool
-  util::SteadyCondition changed_;  ///< for those who wait for the end of something
+  util::SteadyCondition changed_;  ///< for the calls that wait for the end of something
   std::list<Task> waiting_;
   std::map<std::uint64_t, std::size_t> running_;  ///< callbacks by owner
   Threads threads_;

@@ -14,9 +14,9 @@ namespace
 {
 const char* const USAGE =
     "usage: inverter_bus_node [--help] [__name:=NAME] [_PARAMETER:=VALUE] [FROM:=TO]...\n"
-    "Drives the frequency inverters of one bus. It wants the parameter scan_list, best loaded by a launch file:\n"
+    "Drives the frequency inverters of one bus. It needs the parameter scan_list, best loaded by a launch file:\n"
     "  roslaunch inverter_bus bus.launch config:=/path/to/scan_list.yaml name:=conveyor\n"
-    "Parameters, topics and services stand in the package's README.md.\n";
+    "Parameters, topics and services are described in the package's README.md.\n";
 }  // namespace
 
 int main(int argc, char** argv)

@@ -15,7 +15,7 @@ namespace ros_node
 {
 namespace
 {
-/// For what remains to be done in roscpp where nothing is at stake.
+/// For the rest of the work in roscpp, when nothing depends on it any more.
 constexpr Duration PATIENCE = std::chrono::seconds(3);
 
 [[noreturn]] void endProcess(int status)

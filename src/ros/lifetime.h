@@ -14,7 +14,7 @@ namespace inverter_bus
 {
 namespace ros_node
 {
-/// Knows when the node shall end (a signal, `rosnode kill`, or ROS going down by itself) and sees to it that it does, even
+/// Knows when the node must end (a signal, `rosnode kill`, or ROS going down by itself) and makes sure that it does, even
 /// if roscpp hangs on a master that is gone. Make it first in main(), before any thread.
 class Lifetime
 {
@@ -28,7 +28,7 @@ public:
   /// Call after ROS was started.
   void takeOverKill();
 
-  /// From now on there are motors to stop: the end is left to who waits for end().
+  /// From now on there are motors to stop: the end is left to the caller of end().
   void busIsRunning();
 
   /// Set when the node shall end.
@@ -36,7 +36,7 @@ public:
   /// Waits at most \p timeout; true when the node shall end.
   bool waitForEnd(Duration timeout) const;
 
-  /// The motors have been dealt with: the process ends with \p status, whatever the rest of the way does.
+  /// The motors have been dealt with: the process ends with \p status, whatever happens until then.
   void finishSoon(int status);
   /// The rest of the way is over.
   ~Lifetime();

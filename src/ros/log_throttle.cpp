@@ -153,7 +153,7 @@ void LogThrottle::note(const bus::Finding& finding, TimePoint now)
   }
 }
 
-/// The state that a held line tells of is over.
+/// The state that a held line describes is over.
 void LogThrottle::drop(const std::string& subject)
 {
   suppressed_ += held_.erase(subject);

@@ -79,12 +79,12 @@ std::optional<bus::Finding> MasterWatch::findingOf(State state)
   {
     case State::NoMaster:
       return bus::Finding{ bus::Level::Warn, "the ROS master at " + ros::master::getURI() +
-                                                 " does not answer: nobody new can connect; who is connected still "
-                                                 "commands, and command watchdog and stops work as ever" };
+                                                 " does not answer: no new node can connect; connected nodes can still "
+                                                 "command, and the command watchdog and stops work as before" };
     case State::Unknown:
       return bus::Finding{ bus::Level::Warn,
                            "the ROS master was restarted and does not know this node: restart the node; until then "
-                           "only who was connected before can command it" };
+                           "only nodes that were connected before can command it" };
     case State::Known:
       break;
   }

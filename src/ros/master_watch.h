@@ -15,7 +15,7 @@ namespace inverter_bus
 namespace ros_node
 {
 /// Looks whether the ROS master is there and knows this node. A master that was restarted does not, and roscpp never
-/// registers again: the node goes on with whoever is connected, while nobody new finds it. It says so.
+/// registers again: the node goes on with the nodes that are connected, but no new one finds it. It says so.
 class MasterWatch
 {
 public:
@@ -26,7 +26,7 @@ public:
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
 
-  /// What is wrong, if anything is. Any thread.
+  /// The finding, if anything is wrong. Any thread.
   std::optional<bus::Finding> finding() const;
 
   /// Says nothing more. Does not wait.

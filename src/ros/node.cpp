@@ -47,15 +47,15 @@ std::optional<bus::Configuration> readNodeConfiguration()
   }
 }
 
-/// Several inverters may have the same profile: each mistake is told once.
+/// Several inverters may have the same profile: each mistake is logged once.
 void logMistakes(const std::vector<drive::Drive>& drives)
 {
-  std::set<std::string> told;
+  std::set<std::string> logged;
   for (const drive::Drive& drive : drives)
   {
     for (const std::string& mistake : drive.profile().mistakes)
     {
-      if (told.insert(mistake).second)
+      if (logged.insert(mistake).second)
       {
         log(bus::Level::Warn, mistake);
       }
@@ -98,7 +98,7 @@ void logEnd(int status, const bus::BusConfig& config, const std::vector<std::str
   const std::string names = util::joined(unconfirmed, "; ");
   if (!names.empty())
   {
-    log(bus::Level::Error, "shutdown: NOT confirmed as stopped, look after them: " + names);
+    log(bus::Level::Error, "shutdown: NOT confirmed as stopped, check them: " + names);
   }
   else if (status != 0)
   {
@@ -108,7 +108,7 @@ void logEnd(int status, const bus::BusConfig& config, const std::vector<std::str
   }
   else
   {
-    log(bus::Level::Ok, "shutdown: every motor that this node may have set running is confirmed as stopped");
+    log(bus::Level::Ok, "shutdown: every motor that this node may have started is confirmed as stopped");
   }
 }
 }  // namespace
@@ -132,7 +132,7 @@ int runNode(Lifetime& lifetime)
   Commands commands(node, config, bus);
   MasterWatch master_watch;
   Diagnostics diagnostics(*configuration, bus, commands, master_watch, traces);
-  // Everything that may wait for the master lies behind: from here on the end is ours.
+  // Nothing that may wait for the master follows: from here on this function decides when the node ends.
   lifetime.busIsRunning();
   bus.start();
   commands.start();

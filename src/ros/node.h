@@ -10,7 +10,7 @@ namespace inverter_bus
 {
 namespace ros_node
 {
-/// Plays the node from its first to its last line: reads the parameters, starts the bus and what hangs on it, waits for the
+/// Runs the node from start to end: reads the parameters, starts the bus and all that depends on it, waits for the
 /// end and stops the motors.
 /// \return the exit status: 0, or 1 for a wrong configuration or a port that is in use
 int runNode(Lifetime& lifetime);

@@ -9,69 +9,37 @@ namespace inverter_bus
 {
 namespace ros_node
 {
-namespace
+bus::Value toValue(XmlRpc::XmlRpcValue value)
 {
-bus::Value toList(XmlRpc::XmlRpcValue& value)
-{
-  bus::Value list;
-  list.type = bus::Value::Type::List;
-  for (int i = 0; i < value.size(); ++i)
-  {
-    list.list.push_back(toValue(value[i]));
-  }
-  return list;
-}
-
-bus::Value toMap(XmlRpc::XmlRpcValue& value)
-{
-  bus::Value map;
-  map.type = bus::Value::Type::Map;
-  for (auto& entry : value)
-  {
-    map.map[entry.first] = toValue(entry.second);
-  }
-  return map;
-}
-
-bus::Value toScalar(XmlRpc::XmlRpcValue& value)
-{
-  bus::Value scalar;
+  bus::Value result;
   switch (value.getType())
   {
     case XmlRpc::XmlRpcValue::TypeBoolean:
-      scalar.type = bus::Value::Type::Boolean;
-      scalar.boolean = static_cast<bool&>(value);
-      break;
+      return bus::Value::ofBoolean(static_cast<bool&>(value));
     case XmlRpc::XmlRpcValue::TypeInt:
-      scalar.type = bus::Value::Type::Integer;
-      scalar.integer = static_cast<int&>(value);
-      break;
+      return bus::Value::ofInteger(static_cast<int&>(value));
     case XmlRpc::XmlRpcValue::TypeDouble:
-      scalar.type = bus::Value::Type::Number;
-      scalar.number = static_cast<double&>(value);
-      break;
+      return bus::Value::ofNumber(static_cast<double&>(value));
     case XmlRpc::XmlRpcValue::TypeString:
-      scalar.type = bus::Value::Type::Text;
-      scalar.text = static_cast<std::string&>(value);
-      break;
-    default:
-      break;
-  }
-  return scalar;
-}
-}  // namespace
-
-bus::Value toValue(XmlRpc::XmlRpcValue value)
-{
-  switch (value.getType())
-  {
+      return bus::Value::ofText(static_cast<std::string&>(value));
     case XmlRpc::XmlRpcValue::TypeArray:
-      return toList(value);
+      result.type = bus::Value::Type::List;
+      for (int i = 0; i < value.size(); ++i)
+      {
+        result.list.push_back(toValue(value[i]));
+      }
+      break;
     case XmlRpc::XmlRpcValue::TypeStruct:
-      return toMap(value);
+      result.type = bus::Value::Type::Map;
+      for (auto& entry : value)
+      {
+        result.map.push_back({ entry.first, toValue(entry.second) });
+      }
+      break;
     default:
-      return toScalar(value);
+      break;
   }
+  return result;
 }
 
 bus::Value readParameters()
@@ -79,9 +47,7 @@ bus::Value readParameters()
   XmlRpc::XmlRpcValue parameters;
   if (!ros::param::get(ros::this_node::getName(), parameters))
   {
-    bus::Value empty;
-    empty.type = bus::Value::Type::Map;
-    return empty;
+    return bus::Value::ofMap({});
   }
   return toValue(parameters);
 }

@@ -14,7 +14,7 @@ namespace ros_node
 {
 namespace
 {
-/// What waits beyond this is out of date: the oldest goes.
+/// More waiting messages than this are out of date: the oldest goes.
 constexpr std::size_t MOST_WAITING = 500;
 
 constexpr std::uint32_t STATUS_QUEUE = 10;
@@ -118,7 +118,7 @@ void Publishing::waitForWork(std::unique_lock<std::mutex>& lock)
   changed_.wait(lock, ready);
 }
 
-/// What is to be logged goes first.
+/// Lines of the log go first.
 std::optional<Publishing::Item> Publishing::takeNext()
 {
   std::deque<Item>& queue = findings_.empty() ? statuses_ : findings_;

@@ -44,7 +44,7 @@ public:
   void log(const bus::Finding& finding) override;
   void trace(bus::TraceDump dump) override;
 
-  /// Publishes and logs what waits, and ends the thread. Nothing is published or logged afterwards.
+  /// Publishes and logs all that waits, and ends the thread. Nothing is published or logged afterwards.
   void stop();
 
 private:

@@ -30,7 +30,7 @@ constexpr std::size_t OTHER_THREADS = 128;
 /// The bus answers within its bound; this is for the answer's way through the threads of a busy machine.
 constexpr double MARGIN = 0.5;
 
-/// Where a service thread and the bus thread meet. Shared: the answer may come when nobody waits any more.
+/// Where a service thread and the bus thread meet. Shared: the answer may come when the call no longer waits.
 struct AnswerSlot
 {
   bus::Answer answer;

@@ -29,7 +29,7 @@ namespace sim = inverter_bus::simulation;
 
 const char* const USAGE =
     "usage: simulated_bus_node [--help] [__name:=NAME] [_link:=PATH] [_PARAMETER:=VALUE] [FROM:=TO]...\n"
-    "Plays the drives of a scan list on a pseudo-terminal. It wants the parameters scan_list and link (or port: the "
+    "Plays the drives of a scan list on a pseudo-terminal. It needs the parameters scan_list and link (or port: the "
     "name\n"
     "of the link to the terminal), best by simulated_bus.launch. Without ROS: simulated_bus --help\n";
 
@@ -41,7 +41,7 @@ sim::BusConfig readConfig()
   inverter_bus::config::Value parameters = inverter_bus::ros_node::readParameters();
   for (const char* key : OWN_KEYS)
   {
-    parameters.map.erase(key);
+    parameters.erase(key);
   }
   inverter_bus::bench::SimulatedScanList list =
       inverter_bus::bench::readScanList(parameters, "~", inverter_bus::drive::shippedProfileDirectory());
@@ -164,7 +164,7 @@ int main(int argc, char** argv)
   }
   ros::init(argc, argv, "simulated_bus");
   const auto on_signal = [](int) { ros::requestShutdown(); };
-  std::signal(SIGTERM, on_signal);  // roscpp itself looks after SIGINT only
+  std::signal(SIGTERM, on_signal);  // roscpp itself handles SIGINT only
   std::signal(SIGHUP, on_signal);
   ros::NodeHandle node("~");  // lives until after the last message: without any, ROS logs nothing
   try

@@ -40,9 +40,10 @@ std::string busLine(const bus::BusConfig& config)
   line << "port " << config.port << ", " << config.protocol << ", " << config.serial.baud_rate << " baud "
        << config.serial.data_bits << wire::parityLetter(config.serial.parity) << config.serial.stop_bits << ", rs485 "
        << rs485Text(config.serial.rs485) << (config.exclusive ? ", exclusive" : ", shared") << ", interval "
-       << util::numberText(config.interval) << " s, response_timeout " << util::numberText(config.response_timeout)
-       << " s, retries " << config.retries << ", offline_after " << config.offline_after << ", idle_divisor "
-       << config.idle_divisor << ", realtime_priority " << config.realtime_priority << ", parameter_access "
+       << util::numberText(config.interval) << " s, slow_interval " << util::numberText(config.slow_interval)
+       << " s, response_timeout " << util::numberText(config.response_timeout) << " s, retries " << config.retries
+       << ", offline_after " << config.offline_after << ", idle_divisor " << config.idle_divisor
+       << ", realtime_priority " << config.realtime_priority << ", parameter_access "
        << (config.parameters_read_only ? "read_only" : "read_write") << ", trace_directory "
        << expandHome(config.trace_directory);
   return line.str();
@@ -59,7 +60,7 @@ std::string inverterLine(const bus::InverterConfig& config)
        << util::numberText(config.response_timeout) << " s";
   line << (config.stop_unexpected_motion ? ", stop_unexpected_motion" : "")
        << (config.release_on_exit ? ", release_on_exit" : "")
-       << (config.changes.overrides_yaml.empty() ? "" : ", with overrides");
+       << (config.changes.overrides.map.empty() ? "" : ", with overrides");
   for (const std::string& name : config.changes.confirm)
   {
     line << ", confirmed: " << name;
@@ -74,13 +75,13 @@ std::string inverterLine(const bus::InverterConfig& config)
 
 bool waitForMaster(const util::SteadyEvent& end)
 {
-  bool told = false;
+  bool said = false;
   while (!ros::master::check())
   {
-    if (!told)
+    if (!said)
     {
       log(bus::Level::Warn, "waiting for the ROS master at " + ros::master::getURI() + ": start roscore or roslaunch");
-      told = true;
+      said = true;
     }
     if (end.waitFor(MASTER_PERIOD))
     {

@@ -37,7 +37,7 @@ std::optional<int> direction(const drive::Monitor& monitor, double hz_per_unit)
   {
     return std::nullopt;
   }
-  // A drive that stands still reports the direction of its next start.
+  // A drive at rest reports the direction of its next start.
   const int drive_sense = atRest(monitor) ? 0 : *monitor.direction;
   return hz_per_unit < 0.0 ? -drive_sense : drive_sense;
 }
@@ -100,7 +100,7 @@ void putQuantities(const drive::Monitor& monitor, InverterStatus& message)
   put(monitor.temperature, message.temperature, InverterStatus::KNOWN_TEMPERATURE, known);
 }
 
-/// A message of a drive that tells nothing.
+/// A message of a drive that reports nothing.
 InverterStatus emptyMessage()
 {
   InverterStatus message;
@@ -111,6 +111,7 @@ InverterStatus emptyMessage()
   message.dc_voltage = UNKNOWN;
   message.torque = UNKNOWN;
   message.temperature = UNKNOWN;
+  message.slow_age = UNKNOWN;
   return message;
 }
 
@@ -154,12 +155,13 @@ InverterStatus toMessage(const bus::InverterStatus& status, const bus::InverterC
   message.node = config.node;
   message.drive = drive.profile().name + (status.model.empty() ? "" : " " + status.model);
   putOwn(status, message);
-  // The bus empties the monitor of an offline inverter; should it not, what the drive said last is no status any more.
+  // The bus empties the monitor of an offline inverter; should it not, what the drive reported last is no longer a status.
   const drive::Monitor nothing;
   const drive::Monitor& monitor = status.communication_error ? nothing : status.monitor;
   putFlags(monitor, message);
   putCodes(monitor, drive, message);
   putQuantities(monitor, message);
+  message.slow_age = status.slow_age && !status.communication_error ? toSeconds(*status.slow_age) : UNKNOWN;
   put(direction(monitor, config.hz_per_unit), message.direction, InverterStatus::KNOWN_DIRECTION, message.known);
   put(velocity(monitor, config.hz_per_unit), message.velocity, InverterStatus::KNOWN_VELOCITY, message.known);
   return message;

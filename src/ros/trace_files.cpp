@@ -88,7 +88,7 @@ bool startsAndEndsWith(const std::string& name, const std::string& start, const 
          name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
-/// A file of ours: \p prefix, a date and a time, EXTENSION. What a user calls similarly stays.
+/// A file of this recorder: \p prefix, a date and a time, EXTENSION. What a user calls similarly stays.
 bool isTrace(const std::string& name, const std::string& prefix)
 {
   constexpr std::size_t DATE_SIZE = 8;
@@ -101,7 +101,7 @@ bool isTrace(const std::string& name, const std::string& prefix)
   return std::all_of(date, date + DATE_SIZE, is_digit) && date[DATE_SIZE] == 'T';
 }
 
-/// Which of the two kinds a file of ours is; those of earlier versions count as written by themselves.
+/// Which of the two kinds a file is; those of earlier versions count as automatic ones.
 std::string kindOf(const std::string& name)
 {
   return name.find(ASKED) == std::string::npos ? AUTOMATIC : ASKED;
@@ -197,7 +197,7 @@ std::string TraceFiles::write(const bus::TraceDump& dump, const std::string& kin
   std::error_code result;
   fs::create_directories(directory_, result);
   std::string path = newPath(kind, dump.reason);
-  // Under another name first: whoever watches the directory never sees half a file.
+  // Under another name first: a program that watches the directory never sees half a file.
   const std::string part = path + ".part";
   const int problem = writeNewFile(part, text.str());
   if (problem != 0 || std::rename(part.c_str(), path.c_str()) != 0)
@@ -264,7 +264,7 @@ void TraceFiles::work()
   }
 }
 
-/// The number keeps names apart and in order when the wall clock stands still or goes back.
+/// The number keeps names apart and in order when the wall clock stops or goes back.
 std::string TraceFiles::newPath(const std::string& kind, const std::string& reason)
 {
   char number[16];

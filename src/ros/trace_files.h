@@ -20,7 +20,7 @@ namespace ros_node
 std::string expandHome(const std::string& path);
 
 /// Writes the flight recorder's content into files, away from the bus thread. Of one node the newest 50 that were written by
-/// themselves and the newest 50 that somebody asked for are kept. Each is named in the log.
+/// themselves and the newest 50 that were asked for are kept. Each is named in the log.
 class TraceFiles
 {
 public:
@@ -46,7 +46,7 @@ public:
   /// another waits for a slow disk is left out. Any thread.
   void writeSoon(bus::TraceDump dump);
 
-  /// Writes what \p record gives now because somebody asks for it, but at most one file per second: else the last one that
+  /// Writes what \p record gives now because it was asked for, but at most one file per second: else the last one that
   /// was asked for. Any thread.
   /// \return the file's path; empty: it failed, and \p error says why
   std::string writeAsked(const std::function<bus::TraceDump()>& record, TimePoint now, std::string& error);
@@ -54,7 +54,7 @@ public:
   /// The file that was written last, if any. Any thread.
   std::optional<File> last() const;
 
-  /// Writes what waits and ends the thread: nothing is written soon any more.
+  /// Writes the files that wait and ends the thread: nothing is written afterwards.
   void stop();
 
 private:

@@ -155,7 +155,7 @@ class Storm(unittest.TestCase):
         self.assertEqual(self.bench.driver.wait(), 0, self.bench.driver.log())
         self.end_callers()
         self.assertAllStopped()
-        self.assertIn('every motor that this node may have set running is confirmed as stopped', self.bench.driver.log())
+        self.assertIn('every motor that this node may have started is confirmed as stopped', self.bench.driver.log())
 
 
 if __name__ == '__main__':

@@ -425,6 +425,25 @@ TEST_F(BehindAGateway, aZeroAfterALateRunInsistsLikeAStop)
   EXPECT_FALSE(bus_->status(A).stop_active);
 }
 
+TEST_F(BehindAGateway, aZeroAfterALateRunLocksAtOnce)
+{
+  start();
+  bus_->settleIn(20.0);
+  startAHeldRun(1.5);
+  const auto locked = [this] { return bus_->coordinator().report(bus_->now()).inverters[A].status.locked; };
+  ASSERT_FALSE(locked());
+  bus_->command(A, 0.0);
+  EXPECT_TRUE(locked()) << "the RUN may still be carried out";
+  // Whoever has sent 0 is neutral; until the stop behind the RUN is confirmed that opens nothing.
+  ASSERT_TRUE(bus_->runUntil(10.0, [&] {
+    const bool was_locked = locked();
+    EXPECT_EQ(bus_->command(A, 20.0) == 0, !was_locked);
+    bus_->command(A, 0.0);
+    return !was_locked;
+  }));
+  EXPECT_EQ(bus_->motor("a", "run_coil"), 0.0);
+}
+
 /// The RUN-off frame of A (coil 0000 on the wire) that the gateway has not answered is the one stop of A that it may hold.
 TEST_F(BehindAGateway, aStopWaitsForTheFrameOfAZeroOfTheSameInverter)
 {

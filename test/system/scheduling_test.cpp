@@ -315,18 +315,6 @@ TEST(Scheduling, everyFrameKeepsTheGapOfTheLine)
   }
 }
 
-TEST(Scheduling, slowValuesStayYoungerThanASecondOrAreNotShown)
-{
-  VirtualBus bus(belts(5));
-  bus.settleIn();
-  for (int step = 0; step < 100; ++step)
-  {
-    bus.run(0.05);
-    EXPECT_TRUE(bus.status(0).monitor.dc_voltage.has_value()) << step;
-    EXPECT_TRUE(bus.status(0).monitor.temperature.has_value()) << step;
-  }
-}
-
 TEST(Scheduling, anMx2sRunWordsTakeTwoExchangesPerRefresh)
 {
   VirtualBus bus(belts(1));

@@ -18,8 +18,9 @@ namespace
 constexpr std::size_t KEPT_ENDS = 512;
 constexpr std::size_t KEPT_READS = 64;
 constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may stand beside the refresh's
-constexpr double KEPT_SAMPLES_S = 3.0;
-constexpr double OLDEST_SLOW_VALUE_S = 1.0;  // contract, section 2
+constexpr double KEPT_SAMPLES_S = 120.0;
+constexpr double OLDEST_SLOW_VALUE_S = 10.0;  // contract, 8.3: in any case, and so many periods
+constexpr double OLDEST_SLOW_VALUE_PERIODS = 2.5;
 constexpr double LONG_TURNING_S = 0.5;
 constexpr double TORQUE_TOLERANCE = 1.5;  // [%] of rated: drives report whole percents
 constexpr double MEMORY_OF_LATE_S = 2.0;  // the longest bar, and the exchange that it lets through
@@ -183,8 +184,9 @@ void Values::checkTorque(TimePoint now, const bus::InverterStatus& status) const
 {
   const std::deque<Sample>& samples = lanes_[status.index].samples;
   const std::optional<double>& torque = status.monitor.torque;
-  // A status that is published once more keeps its stamp and what was read with it; the rest is of the last second.
-  const Duration age = seconds(OLDEST_SLOW_VALUE_S) + observed_.scene.longestExchange();
+  // A status that is published once more keeps its stamp and what was read with it; the rest is as old as it may be.
+  const double periods = OLDEST_SLOW_VALUE_PERIODS * toSeconds(observed_.scene.longestSlowPeriod());
+  const Duration age = seconds(std::max(OLDEST_SLOW_VALUE_S, periods)) + observed_.scene.longestExchange();
   const TimePoint oldest = std::min(status.stamp, now) - age;
   if (!torque || samples.empty() || samples.front().time > oldest)
   {
@@ -200,9 +202,9 @@ void Values::checkTorque(TimePoint now, const bus::InverterStatus& status) const
   }
   if (least <= most && (std::fabs(*torque) < least - TORQUE_TOLERANCE || std::fabs(*torque) > most + TORQUE_TOLERANCE))
   {
-    fail(now, "slow values are at most 1 s old",
-         observed_.scene.title(status.index) + ": published torque " + decimal(*torque) +
-             " %, within the last second it was " + decimal(least) + " to " + decimal(most) + " %");
+    fail(now, "slow values are not older than 2.5 periods, or 10 s",
+         observed_.scene.title(status.index) + ": published torque " + decimal(*torque) + " %, within the last " +
+             decimal(toSeconds(age)) + " s it was " + decimal(least) + " to " + decimal(most) + " %");
   }
 }
 

@@ -18,7 +18,7 @@ namespace fuzz
 namespace checks
 {
 /// Rule 3.9 and contract, section 2: what is published is the motor's. Each stamp is the end of a reply that was waited
-/// for, the frequency is that of this exchange, slow values are at most 1 s old, and a motor that turns is not shown at rest.
+/// for, the frequency is that of this exchange, slow values are not too old (8.3), and a motor that turns is not shown at rest.
 class Values
 {
 public:

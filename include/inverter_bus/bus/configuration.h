@@ -77,7 +77,8 @@ struct BusConfig
   std::optional<wire::TcpAddress> gateway;
   /// tcp://: the gateway speaks Modbus TCP; otherwise it passes RTU frames on as they are.
   bool modbus_tcp = false;
-  double interval = 0.0;  ///< [s] 0-655.35
+  double interval = 0.0;       ///< [s] 0-655.35
+  double slow_interval = 1.0;  ///< [s] shortest period of the slow values, 0: they are never read
   double response_timeout = 0.1;
   double gateway_timeout = 3.0;  ///< [s] tcp://: after that a gateway has given up a request that it left unanswered
   /// [s] longest pause inside a reply; resolved by makeTiming() where it is not given.
@@ -104,15 +105,14 @@ struct Configuration
 {
   BusConfig bus;
   std::vector<drive::Drive> drives;
-  /// What was taken and should be mended: one line each, for the log and for whoever checks a file.
+  /// What was accepted but should be corrected: one line each, for the log and for programs that check a file.
   std::vector<std::string> warnings;
 };
 
 /// Judges the node's parameters (contract, section 2). \p place names the source in messages ("~" for ROS parameters or a
 /// file), \p profile_directory holds the profiles.
 /// \throws drive::ConfigurationError one line: key, value, place, what is allowed
-Configuration readConfiguration(const Value& parameters, const std::string& place,
-                                const std::string& profile_directory);
+Configuration readConfiguration(Value parameters, const std::string& place, const std::string& profile_directory);
 }  // namespace bus
 }  // namespace inverter_bus
 

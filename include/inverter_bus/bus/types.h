@@ -113,6 +113,8 @@ struct InverterStatus
   bool has_stamp = false;
   /// Fields older than they may be are already taken out; empty while offline.
   drive::Monitor monitor;
+  /// Age of the oldest slow value; empty: none was read since the drive was found.
+  std::optional<Duration> slow_age;
   bool run_command = false;
   bool communication_error = false;
   /// Offline, but the communication works: the drive has answered lately, and refuses to tell its status for the moment.

@@ -20,7 +20,7 @@ namespace inverter_bus
 namespace drive
 {
 /// What one drive reports, in its own sense (positive = forward) and in SI units. An empty field: it can't tell, or has
-/// not told yet.
+/// not reported it yet.
 struct Monitor
 {
   std::optional<bool> run_seen;  ///< the RUN command that the drive holds from the bus
@@ -32,7 +32,7 @@ struct Monitor
   std::optional<bool> overload_warning;
   std::optional<bool> pid_deviation;
   std::optional<bool> faulted;
-  std::optional<bool> restarted;  ///< the drive has forgotten what it was told since the last return
+  std::optional<bool> restarted;  ///< the drive has forgotten what it was set to since it last came back
   std::optional<int> direction;   ///< -1, 0, 1
   /// Raw value of \ref faulted that means nothing in the profile; \ref faulted is then empty. Counts as a trip.
   std::optional<std::uint32_t> unknown_trip;
@@ -46,7 +46,7 @@ struct Monitor
   std::optional<double> torque;            ///< [% of rated]
   std::optional<double> temperature;       ///< [degC]
 
-  /// What must be assumed: a state that nobody knows is one; empty: the drive has not told.
+  /// What must be assumed: an unknown state is one; empty: the drive has not reported it.
   std::optional<bool> tripped() const
   {
     return unknown_trip ? std::optional<bool>(true) : faulted;
@@ -155,7 +155,7 @@ public:
   const Sequence* sequence(const std::string& name) const;
   /// Names to confirm before \p name can be used; empty: usable, or not there at all.
   std::string missingFor(const std::string& name) const;
-  /// A start is armed, but a stop is not: a mistake of whoever armed it.
+  /// A start is armed, but a stop is not: a mistake in the scan list.
   bool runsWithoutStop() const;
   /// What to do about missingFor(): the names with the places where they are to be found.
   std::string armingAdvice(const std::string& name) const;

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "inverter_bus/config/value.h"
+
 namespace inverter_bus
 {
 namespace drive
@@ -62,7 +64,7 @@ struct Constant
   std::string unconfirmed;
   /// Which page of which manual holds it.
   std::string where;
-  /// Where its value stands ("file:line" or the scan list entry) and the key, for messages.
+  /// Where its value is ("file:line" or the scan list entry) and the key, for messages.
   std::string place;
   std::string key;
 };
@@ -95,9 +97,9 @@ struct Item
   std::map<std::uint32_t, int> values;
   /// Empty, or the name under which this item is unconfirmed.
   std::string unconfirmed;
-  /// The item's own mark where a constant's mark stands in \ref unconfirmed.
+  /// The item's own mark where a constant's mark is in \ref unconfirmed.
   std::string own_mark;
-  /// Nobody knows where it lies: only an override makes it usable (\ref unconfirmed is then never empty).
+  /// Its place is unknown: only an override makes it usable (\ref unconfirmed is then never empty).
   bool missing = false;
 };
 
@@ -172,7 +174,7 @@ struct Expectation
   std::set<std::uint32_t> accept;
   /// What to do when it has another value.
   std::string advice;
-  /// Judged only while a command of ours is in force.
+  /// Judged only while a command of this node is in force.
   bool when_commanded = false;
 };
 
@@ -244,7 +246,7 @@ struct CommunicationLoss
   double assumed_timeout = 0.0;
   /// Assumed reaction (key drive_loss_action): "runs_on", "decelerate", "coast", "trip".
   std::string assumed_action;
-  /// Also supervised while the motor stands.
+  /// Also supervised at rest.
   bool also_idle = false;
   std::string advice;
 };
@@ -309,7 +311,7 @@ struct Profile
   std::optional<Item> keep_alive;
   std::optional<Block> block;
   std::optional<RegisterMap> map;
-  /// Parameters that tell the ratings [A, V]; empty: none, or not confirmed.
+  /// Parameters that hold the ratings [A, V]; empty: none, or not confirmed.
   std::string rated_current_parameter;
   std::string rated_voltage_parameter;
   /// Fields of \ref status that are read at 1 Hz instead of in every refresh.
@@ -326,7 +328,7 @@ struct Profile
   /// Registers (as printed, from..to) that command the drive: no parameter there can be written.
   std::vector<std::pair<unsigned, unsigned>> command_registers;
 
-  /// What tells this kind of drive from another one.
+  /// What distinguishes this kind of drive from others.
   std::vector<Expectation> identity;
   /// Who may command the drive.
   std::vector<Expectation> command_source;
@@ -357,15 +359,15 @@ struct Profile
 /// What a scan list entry changes in its profile.
 struct ProfileChanges
 {
-  /// YAML text of the entry's `overrides` map (a map of profile keys); empty: none.
-  std::string overrides_yaml;
-  /// Where the overrides stand, for messages.
+  /// The entry's `overrides`, a map of profile keys with its place; None: there are none.
+  config::Value overrides;
+  /// Where the entry names its drive, for messages.
   std::string place;
   /// Names of unconfirmed items that the user has checked, or `all`.
   std::vector<std::string> confirm;
   /// Names of skippableFields() that are left out: not read, not reported, nor what is unconfirmed in them.
   std::vector<std::string> skip;
-  /// Where \ref confirm stands, for messages; empty: where the overrides do.
+  /// Where \ref confirm is, for messages; empty: \ref place.
   std::string confirm_place;
 };
 

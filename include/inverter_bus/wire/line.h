@@ -138,6 +138,8 @@ public:
   bool mayAsk(const Request& request) const;
   /// Earliest time from which mayAsk() is true without further traffic.
   TimePoint mayAskAt(const Request& request) const;
+  /// The same for somebody who decides at \p now, whatever the clock shows meanwhile.
+  TimePoint mayAskAt(const Request& request, TimePoint now) const;
 
   /// Sends, after the silence that Request::quiet_before asks for, and waits for the answer; closes the port if it is
   /// lost. Call settle() before. Does not consult mayAsk(): a stop is exempt from it. \p turnaround_after silence to
@@ -177,7 +179,7 @@ public:
   std::vector<Outstanding> outstanding() const;
   /// Modbus TCP: the gateway has shown on this connection that it keeps transaction numbers and units.
   bool gatewayTrusted() const;
-  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies bear transaction number 0 ..."),
+  /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies carry transaction number 0 ..."),
   /// as seen since the start; empty as long as it does not. Name it once.
   std::string gatewayQuirk() const;
   /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come
@@ -188,7 +190,6 @@ public:
 
 private:
   struct Waiting;
-  TimePoint mayAskAt(const Request& request, TimePoint now) const;
   bool settle(Duration quiet);
   bool send(const Bytes& frame, Reply& reply);
   Waiting startWaiting(const Request& request, TimePoint sent_at);

@@ -19,7 +19,7 @@ public:
   /// A new connection, or a valid reply: what was said before explains nothing that comes.
   void forget();
   void add(const Bytes& bytes);
-  /// One line, fit for a message (see util::printable()); empty if what came is no text.
+  /// One line, fit for a message (see util::printable()); empty if it is not a text.
   std::string text() const;
 
 private:

@@ -97,7 +97,7 @@ public:
   {
     return std::nullopt;
   }
-  /// A network connection: no adapter on the way returns what is sent, and somebody at its other end may speak first.
+  /// A network connection: no adapter on the way returns what is sent, and the program at its other end may speak first.
   virtual bool isNetwork() const
   {
     return false;

@@ -83,7 +83,7 @@ struct Reply
   /// was sent.
   std::uint64_t ticket = 0;
   /// Timeout: the exception code by which a gateway said so, which has then done with the request (nothing of it is
-  /// outstanding); 0: nobody answered.
+  /// outstanding); 0: no answer.
   std::uint8_t gateway_code = 0;
   /// Timeout: the other end has closed the connection in place of the answer (contract, 8.9), and a new one is opened at
   /// once.

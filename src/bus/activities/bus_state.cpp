@@ -30,11 +30,11 @@ Duration longestResponseTimeout(const BusConfig& bus)
 }
 }  // namespace
 
-BusState::BusState(const Configuration& the_configuration, const wire::Line& the_line)
+BusState::BusState(const Configuration& the_configuration, const wire::Line& line)
   : configuration(the_configuration)
-  , line(the_line)
   , budget(Budget(configuration, line).figures())
   , scheduler(schedulerSettings(configuration.bus))
+  , slow_share(budget.slow)
   , outbox(configuration.bus.inverters.size())
   , refusals(configuration.bus.inverters.size())
   , gateway({ configuration.bus.modbus_tcp, seconds(configuration.bus.gateway_timeout),

@@ -19,6 +19,7 @@
 #include "bus/report/refusal_log.h"
 #include "bus/rules/budget.h"
 #include "bus/rules/scheduler.h"
+#include "bus/rules/slow_share.h"
 #include "inverter_bus/bus/types.h"
 #include "inverter_bus/wire/line.h"
 
@@ -29,17 +30,16 @@ namespace bus
 /// What the activities of one bus share. Whoever changes what is the business of one activity only, does it there.
 struct BusState
 {
-  BusState(const Configuration& the_configuration, const wire::Line& the_line);
+  /// \p line is asked for its timing, and not kept.
+  BusState(const Configuration& the_configuration, const wire::Line& line);
 
   const Configuration& configuration;
-  /// Only questions without side effects, and only from what the bus thread calls; what users ask for and what is told to them
-  /// knows of the line what line_watch has copied.
-  const wire::Line& line;
   /// Of the configuration alone: it does not change while the bus runs.
   const Budget::Figures budget;
   /// In node order.
   std::vector<std::unique_ptr<Inverter>> inverters;
   Scheduler scheduler;
+  SlowShare slow_share;
   Outbox outbox;
   LoadMeter meter;
   LineWatch line_watch;

@@ -168,6 +168,8 @@ std::vector<InverterView> GatewayTraffic::views(TimePoint now) const
   for (const auto& inverter : bus_.inverters)
   {
     views.push_back(inverter->view(now, bus_.budget.deadline_margin));
+    // A setting that is repeated waits for the share of the slow values (contract, 8.3).
+    views.back().background = views.back().background && (!inverter->settings.repeats() || bus_.slow_share.open(now));
     views.back().stop_pending = views.back().stop_pending && !untested(*inverter);
     views.back().stop_not_before = stopNotBefore(now, *inverter);
     views.back().refresh_unanswered = bus_.gateway.refreshUnanswered(now, inverter->index);
@@ -231,7 +233,7 @@ std::optional<Finding> GatewayTraffic::finding() const
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.
 std::optional<Finding> GatewayTraffic::quirkFinding() const
 {
-  const std::string& quirk = bus_.line_watch.gatewayQuirk();
+  const std::string& quirk = bus_.line_watch.facts().gateway_quirk;
   return quirk.empty() ? std::nullopt
                        : std::optional<Finding>(Finding{ Level::Warn, "the gateway is used as it is: " + quirk });
 }

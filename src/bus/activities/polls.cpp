@@ -21,6 +21,17 @@ MapOrders mapOrders(TimePoint now, Inverter& inverter)
                        seen.output_frequency.value_or(1.0) == 0.0;
   return inverter.map_use.orders(now, inverter.settings.map().fits(), run, at_rest);
 }
+
+/// The wire's time for all that takes from the share of the slow values, once: with \p gap before each exchange, \p unread for
+/// one that was not made yet.
+Duration slowNeeds(const Inverter& inverter, Duration gap, Duration unread)
+{
+  const auto& sources = inverter.drive.profile().command_source;
+  const auto repeated = std::count_if(sources.begin(), sources.end(),
+                                      [](const drive::Expectation& source) { return source.when_commanded; });
+  const Duration settings = inverter.movement.runConfirmed() ? unread * repeated : Duration{ 0 };
+  return inverter.refresh.reads().slowNeeds(gap, unread) + settings;
+}
 }  // namespace
 
 Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences)
@@ -33,20 +44,41 @@ Polls::Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops,
 {
 }
 
-InFlight Polls::compose(TimePoint now, const Pick& pick)
+/// What the share of the slow values leaves to \p inverter (contract, 8.3). One whose warning word has a reason to be another
+/// one goes before all others.
+SlowLeave Polls::slowLeave(TimePoint now, const Inverter& inverter) const
+{
+  Duration needs{ 0 };
+  bool others_ask = false;
+  for (const auto& other : bus_.inverters)
+  {
+    if (!other->link.offline())
+    {
+      needs += slowNeeds(*other, bus_.budget.slow.gap, bus_.budget.slow.longest);
+      others_ask = others_ask || (other->index != inverter.index && other->refresh.asksForWarning(now));
+    }
+  }
+  SlowLeave leave;
+  leave.period = bus_.slow_share.reads() ? bus_.slow_share.period(needs) : Duration{ 0 };
+  leave.open = bus_.slow_share.open(now) && (inverter.refresh.asksForWarning(now) || !others_ask);
+  return leave;
+}
+
+InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
   inverter.refresh.useMap([&inverter, now] { return mapOrders(now, inverter); });
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
-  drive::ReadBlock block = inverter.refresh.next(now);
+  drive::ReadBlock block = inverter.refresh.next(now, slowLeave(now, inverter));
   current.request = inverter.drive.read(inverter.config.node, block);
-  while (!resync && !bus_.line.mayAsk(current.request) && inverter.refresh.skipSlow())
+  while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {
     // What decides over safety does not wait a second for a temperature.
     block = inverter.refresh.next(now);
     current.request = inverter.drive.read(inverter.config.node, block);
   }
+  current.slow = inverter.refresh.asked().isSlowed();
   // Rule 4.1: the confirmed words are repeated only while the last exchange showed our RUN in force; never through a gateway,
   // which could carry them out when everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11).
   if (!bus_.configuration.bus.gateway && !block.chosen.empty() && inverter.mayRepeatWords(now))
@@ -55,19 +87,19 @@ InFlight Polls::compose(TimePoint now, const Pick& pick)
     const wire::Request both =
         words.empty() ? current.request : inverter.drive.writeAndRead(inverter.config.node, words, block);
     // After a lost 17H that shape is barred for a while, the plain read is not.
-    current.request = bus_.line.mayAsk(both) ? both : current.request;
+    current.request = line.mayAsk(both, now) ? both : current.request;
   }
   std::optional<drive::ReadBlock> variant = block;
-  while (!resync && variant && !bus_.line.mayAsk(current.request))
+  while (!resync && variant && !line.mayAsk(current.request, now))
   {
     // Without a loop-back a lost read would leave the drive unwatched for a second: another length is no risk.
     variant = inverter.drive.variantOf(*variant);
     current.request = variant ? inverter.drive.read(inverter.config.node, *variant) : current.request;
   }
   const auto serve_by = inverter.serveBy(bus_.budget.deadline_margin);
-  if (!resync && !bus_.line.mayAsk(current.request) && serve_by && *serve_by <= now)
+  if (!resync && !line.mayAsk(current.request, now) && serve_by && *serve_by <= now)
   {
-    const auto spare = guard_.spareRead(inverter);
+    const auto spare = guard_.spareRead(now, inverter, line);
     current.pick.what = spare ? Pick::What::KeepAlive : current.pick.what;
     current.request = spare.value_or(current.request);
   }
@@ -82,7 +114,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   const bool says_nothing = bus_.behind_another && !isAnswered(reply);
   if (!current.resync && !says_nothing)
   {
-    inverter.liveness.noteRead(bus_.line.cost(current.request, Duration{ 0 }), reply);
+    inverter.liveness.noteRead(current.cost, reply);
   }
   if (isAnswered(reply))
   {

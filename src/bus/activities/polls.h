@@ -18,12 +18,13 @@ class Polls
 public:
   Polls(BusState& bus, Turns& turns, const ReplyGuard& guard, Stops& stops, Absences& absences);
 
-  InFlight compose(TimePoint now, const Pick& pick);
+  InFlight compose(TimePoint now, const Pick& pick, const LineView& line);
   void ended(const InFlight& current, const wire::Reply& reply);
   /// The end of a read whose answer is not used.
   void keptAlive(const InFlight& current, const wire::Reply& reply);
 
 private:
+  SlowLeave slowLeave(TimePoint now, const Inverter& inverter) const;
   void refusedStatus(const wire::Reply& reply, Inverter& inverter);
   void judge(TimePoint now, Inverter& inverter);
   void actOn(TimePoint now, Inverter& inverter, const Judgement& judgement);

@@ -107,7 +107,7 @@ void PortWatch::lost(TimePoint now)
   const bool unused = !works_;
   if (unused && bus_.configuration.bus.gateway)
   {
-    const std::string words = bus_.line.peerWords();
+    const std::string& words = bus_.line_watch.facts().peer_words;
     fails(now, "port " + port + " is closed by its other end as soon as it is open" +
                    (words.empty() ? "" : ", which says '" + words + "'") +
                    ": another client may hold it, or it serves another protocol mode");
@@ -126,7 +126,7 @@ void PortWatch::fails(TimePoint now, const std::string& error)
   bus_.gateway.connectionEnded(now);
   if (bus_.connected && !(failing_ && error_ == error))
   {
-    failing_ = !works_ || bus_.line.telnetFound();
+    failing_ = !works_ || bus_.line_watch.facts().telnet_found;
     error_ = error;
     bus_.outbox.log(Level::Error, error_ + "; the node keeps trying", PORT_SUBJECT);
     complained_ = true;
@@ -147,7 +147,7 @@ void PortWatch::closedForTelnet(TimePoint now)
 /// again at once, and nothing else happens.
 bool PortWatch::resumes(TimePoint now, std::optional<std::size_t> index)
 {
-  if (!bus_.connected || bus_.line.lastLoss() != wire::Loss::ClosedByPeer)
+  if (!bus_.connected || bus_.line_watch.facts().last_loss != wire::Loss::ClosedByPeer)
   {
     bus_.connection.lost();
     return false;

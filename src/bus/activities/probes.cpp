@@ -23,12 +23,12 @@ Probes::Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stop
 {
 }
 
-InFlight Probes::compose(const Pick& pick)
+InFlight Probes::compose(const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
   current.loopback = byLoopback(inverter) && inverter.drive.loopback(inverter.config.node, 0).has_value();
-  current.request = request(inverter, ++bus_.loopback_number, timeout(inverter));
+  current.request = request(inverter, ++bus_.loopback_number, timeout(inverter, line));
   inverter.link.probeSent();
   return current;
 }
@@ -59,7 +59,7 @@ void Probes::ended(const InFlight& current, const wire::Reply& reply)
 
 /// Probes share 5 % of the bus time, and each dead inverter shall be asked every 3 s: the more are dead, the shorter each
 /// one may be waited for, but never shorter than the inverter has ever needed. Its reply still counts when it comes late.
-Duration Probes::timeout(const Inverter& inverter) const
+Duration Probes::timeout(const Inverter& inverter, const LineView& line) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
   const auto dead = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
@@ -74,7 +74,7 @@ Duration Probes::timeout(const Inverter& inverter) const
   const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<long>(dead, 1)));
   const Duration needed = inverter.link.slowestReply() + inverter.link.slowestReply() / 2;
   const Duration least = std::max(needed, seconds(SHORTEST_PROBE_TIMEOUT_S));
-  return std::min(full, std::max(least, share - bus_.line.costUnanswered(bare)));
+  return std::min(full, std::max(least, share - line.costUnanswered(bare)));
 }
 
 void Probes::lateReply(TimePoint now, const wire::LateReply& late)

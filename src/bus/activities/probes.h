@@ -4,6 +4,7 @@
 #define INVERTER_BUS_BUS_PROBES_H
 
 #include "bus/activities/stops.h"
+#include "bus/line_view.h"
 
 namespace inverter_bus
 {
@@ -15,10 +16,10 @@ class Probes
 public:
   Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stops);
 
-  InFlight compose(const Pick& pick);
+  InFlight compose(const Pick& pick, const LineView& line);
   void ended(const InFlight& current, const wire::Reply& reply);
   /// How long a probe of this inverter may wait for the reply.
-  Duration timeout(const Inverter& inverter) const;
+  Duration timeout(const Inverter& inverter, const LineView& line) const;
   /// A reply that came after its time-out: its station is alive.
   void lateReply(TimePoint now, const wire::LateReply& late);
 

@@ -14,10 +14,10 @@ ReplyGuard::ReplyGuard(BusState& bus) : bus_(bus)
 
 /// Rule 3.9: after a time-out nothing of the same shape is asked of this station before its late reply, or a loop-back
 /// with a fresh number, has come. A stop's write is exempt: its read-back decides, or a second write after a loop-back.
-bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
+bool ReplyGuard::makeSafe(TimePoint now, InFlight& current, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
-  if (current.request.broadcast || bus_.line.mayAsk(current.request))
+  if (current.request.broadcast || line.mayAsk(current.request, now))
   {
     return true;
   }
@@ -41,9 +41,9 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
   }
   if (current.pick.what == Pick::What::Stop)
   {
-    return stop_write || readBackSafely(inverter, current);
+    return stop_write || readBackSafely(now, current, line);
   }
-  const TimePoint allowed = std::max(bus_.line.mayAskAt(current.request), now + std::chrono::milliseconds(1));
+  const TimePoint allowed = std::max(line.mayAskAt(current.request, now), now + std::chrono::milliseconds(1));
   if (current.pick.what == Pick::What::Velocity)
   {
     // The other members of a group don't wait for it.
@@ -63,7 +63,7 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
   {
     const auto serve_by =
         current.pick.what == Pick::What::Refresh ? inverter.serveBy(bus_.budget.deadline_margin) : std::nullopt;
-    const bool early = serve_by && *serve_by < allowed && spareRead(inverter);
+    const bool early = serve_by && *serve_by < allowed && spareRead(now, inverter, line);
     inverter.pauses.holdStatus(early ? std::max(*serve_by, now + std::chrono::milliseconds(1)) : allowed);
   }
   return false;
@@ -71,12 +71,13 @@ bool ReplyGuard::makeSafe(TimePoint now, InFlight& current)
 
 /// RUN that was read off in the late reply to another request is no proof: it is asked in another shape, or, where the
 /// drive has none, the write goes again until the bar has ended.
-bool ReplyGuard::readBackSafely(Inverter& inverter, InFlight& current) const
+bool ReplyGuard::readBackSafely(TimePoint now, InFlight& current, const LineView& line) const
 {
+  Inverter& inverter = *bus_.inverters[current.inverter];
   for (auto read = inverter.drive.variantOf(*inverter.drive.runBlock()); read; read = inverter.drive.variantOf(*read))
   {
     wire::Request request = inverter.prepared(inverter.drive.read(inverter.config.node, *read));
-    if (bus_.line.mayAsk(request))
+    if (line.mayAsk(request, now))
     {
       request.response_timeout = current.request.response_timeout;
       current.request = request;
@@ -88,7 +89,7 @@ bool ReplyGuard::readBackSafely(Inverter& inverter, InFlight& current) const
 }
 
 /// A read that no late reply can answer; nothing: this drive has none.
-std::optional<wire::Request> ReplyGuard::spareRead(const Inverter& inverter) const
+std::optional<wire::Request> ReplyGuard::spareRead(TimePoint now, const Inverter& inverter, const LineView& line) const
 {
   std::vector<drive::ReadBlock> reads = inverter.refresh.reads().blocks(StatusRead::Kind::Fast);
   const std::vector<drive::ReadBlock> slow = inverter.refresh.reads().blocks(StatusRead::Kind::Slow);
@@ -98,7 +99,7 @@ std::optional<wire::Request> ReplyGuard::spareRead(const Inverter& inverter) con
     for (; read; read = inverter.drive.variantOf(*read))
     {
       const wire::Request request = inverter.drive.read(inverter.config.node, *read);
-      if (bus_.line.mayAsk(request))
+      if (line.mayAsk(request, now))
       {
         return request;
       }

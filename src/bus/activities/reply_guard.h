@@ -7,6 +7,7 @@
 
 #include "bus/activities/bus_state.h"
 #include "bus/exchange.h"
+#include "bus/line_view.h"
 
 namespace inverter_bus
 {
@@ -19,12 +20,12 @@ public:
   explicit ReplyGuard(BusState& bus);
 
   /// True: it may go, perhaps as a loop-back before it; false: it waits, and has been put off.
-  bool makeSafe(TimePoint now, InFlight& current);
+  bool makeSafe(TimePoint now, InFlight& current, const LineView& line);
   /// A read that no late reply can answer; nothing: this drive has none.
-  std::optional<wire::Request> spareRead(const Inverter& inverter) const;
+  std::optional<wire::Request> spareRead(TimePoint now, const Inverter& inverter, const LineView& line) const;
 
 private:
-  bool readBackSafely(Inverter& inverter, InFlight& current) const;
+  bool readBackSafely(TimePoint now, InFlight& current, const LineView& line) const;
 
   BusState& bus_;
 };

@@ -67,7 +67,7 @@ BusStatus Reports::busStatus(TimePoint now) const
   status.node = bus_.last_node;
   status.error_id = bus_.group_error.id() != 0 ? bus_.group_error.id() : bus_.last_error;
   status.error = status.error_id != 0;
-  status.counters = bus_.line_watch.counters();
+  status.counters = bus_.line_watch.facts().counters;
   status.reconnects = port_.reconnects();
   status.cycle_time = toSeconds(bus_.scheduler.cycleTime());
   status.utilization = bus_.meter.utilization(now);
@@ -163,14 +163,17 @@ void Reports::addValues(Report& report) const
   {
     report.values.emplace_back("adapter latency", adapter_.text());
   }
-  report.values.emplace_back("longest pause in a reply", util::millisecondsText(bus_.line.patience()));
+  report.values.emplace_back("longest pause in a reply", util::millisecondsText(bus_.budget.longest_pause));
   if (bus_.gateway.active())
   {
     report.values.emplace_back("gateway kept by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
     report.values.emplace_back("offline inverter back within", traffic_.returnText());
   }
-  report.values.emplace_back("local echo", bus_.line_watch.echoFound() ? "removed" : "none");
-  report.values.emplace_back("frames of others", std::to_string(bus_.line_watch.counters().foreign_frames));
+  report.values.emplace_back("slow values", bus_.slow_share.reads()
+                                                ? "at most " + util::fixedText(SLOW_SHARE * 100.0, 1) + " % of the wire"
+                                                : std::string("never read"));
+  report.values.emplace_back("local echo", bus_.line_watch.facts().echo_found ? "removed" : "none");
+  report.values.emplace_back("frames of others", std::to_string(bus_.line_watch.facts().counters.foreign_frames));
 }
 }  // namespace bus
 }  // namespace inverter_bus

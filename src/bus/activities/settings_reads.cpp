@@ -18,6 +18,7 @@ InFlight SettingsReads::compose(const Pick& pick) const
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
+  current.slow = inverter.settings.repeats();
   current.request = inverter.prepared(inverter.settings.next());
   return current;
 }

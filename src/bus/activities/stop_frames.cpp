@@ -35,7 +35,7 @@ bool Stops::broadcastIsSafe() const
   };
   // Its answer could pass for a single stop's where a gateway does not keep numbers and units.
   return bus_.connected && bus_.inverters.size() > 1 && !stop_frame(first).empty() &&
-         bus_.line_watch.gatewayQuirk().empty() &&
+         bus_.line_watch.facts().gateway_quirk.empty() &&
          std::all_of(bus_.inverters.begin(), bus_.inverters.end(), [&](const std::unique_ptr<Inverter>& inverter) {
            const drive::Profile& profile = inverter->drive.profile();
            return profile.name == first.profile().name && profile.broadcast_stop && !inverter->config.ownPort() &&
@@ -171,8 +171,7 @@ void Stops::noteLatency(Duration latency)
 {
   latency_max_ = std::max(latency_max_, latency);
   const Duration in_gateway = traffic_.worstStop() - bus_.budget.worst_stop - turns_.longestReplyDelay();
-  if (latency >
-      bus_.budget.longest_exchange + turns_.longestReplyDelay() + bus_.line.timing().characters(64) + in_gateway)
+  if (latency > turns_.longestExchange() + bus_.budget.stop_slack + in_gateway)
   {
     bus_.outbox.trace("stop took " + util::durationText(latency) + " to the wire");
   }

@@ -28,11 +28,14 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   {
     return;
   }
+  // A request in a gateway may set RUN after the first frame of the stop: locked until the second one is confirmed (contract,
+  // 8.8).
+  const bool locks = lock || bus_.gateway.motionUntil(now, inverter.index);
   if (news)
   {
-    bus_.outbox.event(inverter.config.name + ": a stop is accepted" + (lock ? ", which locks" : ""));
+    bus_.outbox.event(inverter.config.name + ": a stop is accepted" + (locks ? ", which locks" : ""));
   }
-  if (lock)
+  if (locks)
   {
     inverter.stop.hold();
     inverter.interlock.stopRequested();
@@ -140,7 +143,7 @@ std::string Stops::problem(const Inverter& inverter) const
 void Stops::confirmed(TimePoint now, Inverter& inverter)
 {
   inverter.cameToRest(now);
-  inverter.settings.released();
+  inverter.settings.underCommand(false);
   inverter.interlock.stopConfirmed(now);
   bus_.outbox.event(inverter.config.name + ": the stop is confirmed");
   finishCalls(now);
@@ -184,7 +187,7 @@ void Stops::replaceZeros(TimePoint now)
     if (target && target->zero && bus_.scheduler.velocityWaits(inverter->index) &&
         traffic_.zeroNeedsStop(now, *inverter))
     {
-      request(now, *inverter, StopMode::Decelerate, bus_.gateway.motionUntil(now, inverter->index).has_value(), "");
+      request(now, *inverter, StopMode::Decelerate, false, "");
     }
   }
 }

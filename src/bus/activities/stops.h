@@ -23,7 +23,7 @@ public:
 
   // --- requests -------------------------------------------------------------------------------------------------------
   /// Drops whatever was commanded. \p lock: the publishers must return to neutral (4.2), and no newer velocity takes the
-  /// stop's place. \p reason is logged; empty: who asked knows.
+  /// stop's place; behind a gateway that may still set RUN also without it (8.8). \p reason is logged; empty: who asked knows.
   void request(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
   /// The service, of one inverter or of all. \p mode as in Stop.srv; one that nobody knows, or that the drive does not have,
   /// is carried out as DECELERATE, and the answer says so.

@@ -40,7 +40,7 @@ bool TelnetStops::tried(const Inverter& inverter) const
 /// Only stops go over a telnet connection, those of offline inverters as well, and then it is closed.
 bool TelnetStops::over(TimePoint now)
 {
-  if (!bus_.line.telnetFound())
+  if (!bus_.line_watch.facts().telnet_found)
   {
     return false;
   }
@@ -76,8 +76,8 @@ Pick TelnetStops::pick(TimePoint now) const
 /// Nothing but reads and stops goes to somebody who may be a telnet server (contract, 8.11).
 bool TelnetStops::mustWait(TimePoint now, const InFlight& current)
 {
-  const bool unproven =
-      bus_.configuration.bus.gateway && !bus_.configuration.bus.modbus_tcp && !bus_.line.provenSinceOpen();
+  const bool unproven = bus_.configuration.bus.gateway && !bus_.configuration.bus.modbus_tcp &&
+                        !bus_.line_watch.facts().proven_since_open;
   const bool writes = current.pick.isCommand();
   if (unproven && writes)
   {

@@ -41,9 +41,13 @@ void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
   Duration cost{ 0 };
   if (current.pick.what == Pick::What::Refresh && isAnswered(reply))
   {
-    cost = bus_.line.cost(current.request, Duration{ 0 });
+    cost = current.cost;
   }
   bus_.meter.exchange(reply.sent_at, reply.finished_at, cost);
+  if (current.slow && !current.resync)
+  {
+    bus_.slow_share.spent(reply.finished_at, price(current, reply) + bus_.budget.slow.gap);
+  }
   if (bus_.shutting_down)
   {
     return;
@@ -60,8 +64,7 @@ Duration Turns::price(const InFlight& current, const wire::Reply& reply) const
 {
   const Duration own = reply.finished_at - countedFrom(reply);
   const bool by_gateway = bus_.gateway.active() && reply.gateway_code != 0;
-  return std::max(by_gateway ? std::max(own, bus_.gateway.block()) : own,
-                  bus_.line.cost(current.request, Duration{ 0 }));
+  return std::max(by_gateway ? std::max(own, bus_.gateway.block()) : own, current.cost);
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -25,54 +25,10 @@ int rank(std::uint16_t error_id)
   return static_cast<int>(std::find(ORDER.begin(), ORDER.end(), error_id) - ORDER.begin());
 }
 
-/// What the drive is, or is busy with, forbids every velocity; \p error_id 0: nothing.
-std::string inConflict(const Inverter& inverter, std::uint16_t& error_id)
+/// 0: a velocity may move it.
+std::uint16_t errorOf(Permission permission)
 {
-  const bool wrong = inverter.settings.identity() == Identity::Wrong;
-  // That it is the wrong drive says more than that it tells no status (the order of ids: contract, section 2).
-  if (inverter.link.offline() && !wrong)
-  {
-    return "";
-  }
-  if (inverter.settings.identity() != Identity::Right)
-  {
-    error_id = wrong ? ERROR_NOT_ARMED : ERROR_LOCKED;
-    return inverter.settings.identityText();
-  }
-  if (!inverter.link.known())
-  {
-    return "";
-  }
-  if (inverter.services.resetting())
-  {
-    error_id = ERROR_LOCKED;
-    return "a reset of the drive is under way";
-  }
-  if (inverter.inSetup())
-  {
-    error_id = ERROR_LOCKED;
-    return "a parameter is being written in the drive's setup area";
-  }
-  return "";
-}
-
-/// 0: a velocity of this publisher may move it.
-std::uint16_t lockOf(TimePoint now, const Inverter& inverter, const Publisher& publisher)
-{
-  if (inverter.link.offline())
-  {
-    return ERROR_OFFLINE;
-  }
-  if (!inverter.link.known())
-  {
-    // Silence counts from the first status, not from a stop that was confirmed before it.
-    return ERROR_LOCKED;
-  }
-  if (inverter.stop.held())
-  {
-    return ERROR_CANCELLED;
-  }
-  switch (inverter.interlock.judge(now, publisher))
+  switch (permission)
   {
     case Permission::Offline:
       return ERROR_OFFLINE;
@@ -84,6 +40,28 @@ std::uint16_t lockOf(TimePoint now, const Inverter& inverter, const Publisher& p
       return 0;
   }
 }
+
+/// Why velocities of \p publisher are refused with 0xB005.
+std::string textOf(LockReason reason, TimePoint now, const Inverter& inverter, const Publisher& publisher)
+{
+  switch (reason)
+  {
+    case LockReason::Unidentified:
+      return inverter.settings.identityText();
+    case LockReason::Resetting:
+      return "a reset of the drive is under way";
+    case LockReason::InSetup:
+      return "a parameter is being written in the drive's setup area";
+    case LockReason::Tripped:
+      return lockedText(true);
+    case LockReason::Neutral:
+      return inverter.obstacles(now).locked ? lockedText(false)
+                                            : "locked for " + util::printable(publisher.name) +
+                                                  ", which has neither sent 0 nor been silent since the last stop";
+    default:
+      return lockedText(false);
+  }
+}
 }  // namespace
 
 Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences)
@@ -91,37 +69,32 @@ Velocities::Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffi
 {
 }
 
-std::uint16_t Velocities::judgeOne(TimePoint now, std::size_t index, const Publisher& publisher,
-                                   JudgedVelocity& judged) const
+std::uint16_t Velocities::judgeOne(TimePoint now, const Inverter& inverter, const Publisher& publisher,
+                                   const Interlock::Verdict& verdict, JudgedVelocity& judged) const
 {
-  const Inverter& inverter = *bus_.inverters[index];
   if (judged.target.zero && judged.error_id == 0)
   {
     return 0;
   }
+  // In the order in which ids count (contract, section 2); what the velocity itself is, was judged before.
   if (bus_.shutting_down)
   {
     judged.error_id = ERROR_SHUTTING_DOWN;
+    judged.text.clear();
   }
-  if (judged.error_id == 0)
+  else if (judged.error_id == 0 && inverter.settings.identity() == Identity::Wrong)
   {
-    judged.text = inConflict(inverter, judged.error_id);
+    judged.error_id = ERROR_NOT_ARMED;
+    judged.text = inverter.settings.identityText();
   }
-  if (judged.error_id != 0)
+  else if (judged.error_id == 0)
   {
-    judged.text = judged.text.empty() ? errorText(judged.error_id) : judged.text;
-    return judged.error_id;
+    judged.error_id = errorOf(verdict.permission);
+    judged.text = verdict.permission == Permission::Locked ? textOf(verdict.reason, now, inverter, publisher) : "";
   }
-  judged.error_id = lockOf(now, inverter, publisher);
-  judged.text = judged.error_id == 0 ? std::string() : errorText(judged.error_id);
-  if (judged.error_id == ERROR_LOCKED && inverter.interlock.isFaulted())
+  if (judged.error_id != 0 && judged.text.empty())
   {
-    judged.text = lockedText(true);
-  }
-  else if (judged.error_id == ERROR_LOCKED && inverter.link.known() && !inverter.interlock.locked(now))
-  {
-    judged.text = "locked for " + util::printable(publisher.name) +
-                  ", which has neither sent 0 nor been silent since the last stop";
+    judged.text = errorText(judged.error_id);
   }
   return judged.error_id;
 }
@@ -147,8 +120,9 @@ std::uint16_t Velocities::judgeGroup(TimePoint now, const VelocityCommand& comma
     const Inverter& inverter = *bus_.inverters[target.first];
     JudgedVelocity one = inverter.movement.judge(target.second, factor);
     const bool zero = one.error_id == 0 && one.target.zero;
-    repeat = repeat || (!zero && inverter.interlock.judge(now, command.publisher) == Permission::Repeat);
-    const std::uint16_t error_id = judgeOne(now, target.first, command.publisher, one);
+    const Interlock::Verdict verdict = inverter.interlock.judge(now, command.publisher, inverter.holds());
+    repeat = repeat || (!zero && verdict.permission == Permission::Repeat);
+    const std::uint16_t error_id = judgeOne(now, inverter, command.publisher, verdict, one);
     if (error_id != 0 && (worst == 0 || rank(error_id) < rank(worst)))
     {
       worst = error_id;
@@ -215,7 +189,7 @@ void Velocities::tellRefusal(TimePoint now, const VelocityCommand& command, cons
     const auto& target = command.targets[position];
     const JudgedVelocity& one = judged[position];
     Inverter& inverter = *bus_.inverters[target.first];
-    const Obstacles obstacles = inverter.obstacles();
+    const Obstacles obstacles = inverter.obstacles(now);
     one.error_id == error_id ? inverter.command_error.set(error_id, one.text, obstacles)
                              : inverter.command_error.setForOther(error_id, reasons, one.error_id, one.text, obstacles);
     bus_.refusals.notCommanded(target.first, one.error_id != 0 ? refusedVelocity(target.second, one.error_id, one.text)
@@ -245,7 +219,7 @@ void Velocities::apply(TimePoint now, const VelocityCommand& command, const std:
     }
     else if (refused)
     {
-      inverter.interlock.commanded(now, command.publisher, false);
+      inverter.interlock.commanded(now, command.publisher, false, inverter.holds());
     }
     else
     {
@@ -299,7 +273,7 @@ bool Velocities::applyZero(TimePoint now, Inverter& inverter, const Publisher& p
   }
   if (traffic_.zeroNeedsStop(now, inverter))
   {
-    stops_.request(now, inverter, StopMode::Decelerate, bus_.gateway.motionUntil(now, inverter.index).has_value(), "");
+    stops_.request(now, inverter, StopMode::Decelerate, false, "");
     return false;
   }
   inverter.movement.aim(target);
@@ -308,7 +282,7 @@ bool Velocities::applyZero(TimePoint now, Inverter& inverter, const Publisher& p
 
 bool Velocities::applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target)
 {
-  inverter.interlock.commanded(now, publisher, true);
+  inverter.interlock.commanded(now, publisher, true, inverter.holds());
   inverter.command_error.clear();
   bus_.refusals.accepted(inverter.index);
   // Only the stop of a command of 0 can be pending here; the newer command takes its place.
@@ -323,7 +297,7 @@ void Velocities::refuse(TimePoint now, const std::vector<std::size_t>& indices, 
   for (const std::size_t index : indices)
   {
     Inverter& inverter = *bus_.inverters[index];
-    inverter.command_error.set(error_id, text, inverter.obstacles());
+    inverter.command_error.set(error_id, text, inverter.obstacles(now));
     bus_.refusals.notCommanded(index, text);
   }
   if (group)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bus/activities/absences.h"
+#include "bus/line_view.h"
 
 namespace inverter_bus
 {
@@ -25,7 +26,7 @@ public:
               bool group);
 
   /// Nothing: no member needs a frame now.
-  std::optional<InFlight> compose(TimePoint now, const Pick& pick);
+  std::optional<InFlight> compose(TimePoint now, const Pick& pick, const LineView& line);
   void sent(const InFlight& current);
   void ended(const InFlight& current, const wire::Reply& reply);
   /// The frame reaches the drive's EEPROM.
@@ -35,13 +36,14 @@ private:
   std::uint16_t judgeGroup(TimePoint now, const VelocityCommand& command, std::vector<JudgedVelocity>& judged,
                            bool& repeat);
   double factorOf(const VelocityCommand& command) const;
-  std::uint16_t judgeOne(TimePoint now, std::size_t index, const Publisher& publisher, JudgedVelocity& judged) const;
+  std::uint16_t judgeOne(TimePoint now, const Inverter& inverter, const Publisher& publisher,
+                         const Interlock::Verdict& verdict, JudgedVelocity& judged) const;
   void apply(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged, bool refused);
   bool applyZero(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
   bool applyMove(TimePoint now, Inverter& inverter, const Publisher& publisher, const Target& target);
   void tellRefusal(TimePoint now, const VelocityCommand& command, const std::vector<JudgedVelocity>& judged,
                    std::uint16_t error_id);
-  std::optional<Write> nextWrite(TimePoint now, const Inverter& inverter) const;
+  static std::optional<Write> nextWrite(TimePoint now, const Inverter& inverter, const LineView& line);
   void fail(const InFlight& current, const wire::Reply& reply, bool too_many_lost);
   void noteBlockRefusal(const InFlight& current, const wire::Reply& reply);
   void finish(const InFlight& current, const wire::Reply& reply);

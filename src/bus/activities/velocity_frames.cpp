@@ -24,13 +24,13 @@ bool mustBeSeenRunning(const Inverter& inverter)
 
 /// All command words in one frame where the drive can; a word at a time where such a frame could give back a RUN that the
 /// drive has lost (rule 4.1), or where a late reply could be taken for its answer.
-std::optional<Write> Velocities::nextWrite(TimePoint now, const Inverter& inverter) const
+std::optional<Write> Velocities::nextWrite(TimePoint now, const Inverter& inverter, const LineView& line)
 {
   const bool in_force = inverter.mayRepeatWords(now);
   if (inverter.refresh.chosen().read() && (in_force || !inverter.movement.runConfirmed()))
   {
     auto combined = inverter.movement.nextCombined(in_force ? inverter.refresh.chosen().read() : std::nullopt);
-    if (combined && bus_.line.mayAsk(combined->request))
+    if (combined && line.mayAsk(combined->request, now))
     {
       return combined;
     }
@@ -38,7 +38,7 @@ std::optional<Write> Velocities::nextWrite(TimePoint now, const Inverter& invert
   return inverter.movement.next();
 }
 
-std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
+std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   std::vector<std::size_t> members = bus_.scheduler.members(pick.command);
   // The member whose turn it is, and if it needs no frame any more, the next one.
@@ -46,7 +46,7 @@ std::optional<InFlight> Velocities::compose(TimePoint now, const Pick& pick)
   for (const std::size_t member : members)
   {
     Inverter& inverter = *bus_.inverters[member];
-    if (const auto write = nextWrite(now, inverter))
+    if (const auto write = nextWrite(now, inverter, line))
     {
       if (write->starts && mustBeSeenRunning(inverter))
       {
@@ -99,7 +99,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
     inverter.movement.confirmed(current.write, now);
     if (current.write.starts)
     {
-      inverter.settings.commanded();
+      inverter.settings.underCommand(true);
     }
     inverter.lost_writes.acknowledged();
     ++frames_[inverter.index];

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "bus/configuration/configuration_inverter.h"
 #include "bus/configuration/configuration_keys.h"
+#include "bus/configuration/configuration_refusals.h"
 #include "bus/configuration/configuration_scan_list.h"
-#include "bus/configuration/configuration_section.h"
 #include "util/printable.h"
 #include "util/text.h"
 
@@ -29,11 +28,11 @@ void readPort(const Section& section, BusConfig& bus)
   const std::string allowed =
       "a serial device such as /dev/ttyUSB0, tcp://host[:port] (Modbus TCP gateway), or "
       "rtu+tcp://host:port (RTU frames over TCP)";
-  bus.port = section.text("port", bus.port);
+  bus.port = section.filledText("port", bus.port);
   const std::size_t scheme_end = bus.port.find("://");
   if (bus.port.empty())
   {
-    section.fail("port", "is empty", allowed);
+    fail(section, "port", "is empty", allowed);
   }
   if (scheme_end == std::string::npos)
   {
@@ -42,7 +41,7 @@ void readPort(const Section& section, BusConfig& bus)
   const std::string scheme = bus.port.substr(0, scheme_end);
   if (scheme != "tcp" && scheme != "rtu+tcp")
   {
-    section.fail("port", "names an unknown kind of network", allowed);
+    fail(section, "port", "names an unknown kind of network", allowed);
   }
   bus.modbus_tcp = scheme == "tcp";
   std::string error;
@@ -50,16 +49,16 @@ void readPort(const Section& section, BusConfig& bus)
       wire::parseTcpAddress(bus.port.substr(scheme_end + 3), bus.modbus_tcp ? wire::MODBUS_TCP_PORT : 0, error);
   if (!bus.gateway)
   {
-    section.fail("port", "is no address: " + error, allowed);
+    fail(section, "port", "is not an address: " + error, allowed);
   }
 }
 
 std::string readProtocol(const Section& section, const BusConfig& bus)
 {
-  std::string protocol = section.choice("protocol", "modbus_rtu", { "modbus_rtu", "compoway_f" });
+  std::string protocol = section.choice("protocol", { "modbus_rtu", "compoway_f" }, "modbus_rtu");
   if (protocol == "compoway_f" && bus.gateway)
   {
-    section.fail("protocol", "does not go over " + bus.port, "modbus_rtu, or a serial device as port");
+    fail(section, "protocol", "cannot be used over " + bus.port, "modbus_rtu, or a serial device as port");
   }
   return protocol;
 }
@@ -67,12 +66,12 @@ std::string readProtocol(const Section& section, const BusConfig& bus)
 unsigned readBaudRate(const Section& section, unsigned fallback)
 {
   return static_cast<unsigned>(
-      section.integer("baud_rate", fallback, wire::SLOWEST_BAUD_RATE, wire::FASTEST_BAUD_RATE));
+      section.integer("baud_rate", wire::SLOWEST_BAUD_RATE, wire::FASTEST_BAUD_RATE, fallback));
 }
 
 wire::Parity readParity(const Section& section, const std::string& fallback)
 {
-  const std::string parity = section.choice("parity", fallback, { "none", "even", "odd" });
+  const std::string parity = section.choice("parity", { "none", "even", "odd" }, fallback);
   return parity == "even" ? wire::Parity::Even : parity == "odd" ? wire::Parity::Odd : wire::Parity::None;
 }
 
@@ -82,7 +81,7 @@ wire::Rs485 readRs485(const Section& section)
                                                          { "kernel", wire::Rs485::Kernel },
                                                          { "rts_high", wire::Rs485::RtsHigh },
                                                          { "rts_low", wire::Rs485::RtsLow } };
-  return MODES.at(section.choice("rs485", "auto", { "auto", "kernel", "rts_high", "rts_low" }));
+  return MODES.at(section.choice("rs485", { "auto", "kernel", "rts_high", "rts_low" }, "auto"));
 }
 
 wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
@@ -93,12 +92,12 @@ wire::SerialSettings readSerial(const Section& section, const BusConfig& bus)
   // The factory settings of OMRON's CompoWay/F devices are 7E2; a Modbus RTU character has 8 data bits.
   const bool compoway = bus.protocol == "compoway_f";
   serial.parity = readParity(section, compoway ? "even" : "none");
-  serial.data_bits = static_cast<unsigned>(section.choice("data_bits", compoway ? 7 : 8, { 7, 8 }));
+  serial.data_bits = static_cast<unsigned>(section.integerOf("data_bits", { 7, 8 }, compoway ? 7 : 8));
   if (serial.data_bits != 8 && !compoway)
   {
-    section.fail("data_bits", "is too few for modbus_rtu, whose characters have 8", "8");
+    fail(section, "data_bits", "is too few: the characters of modbus_rtu have 8", "8");
   }
-  serial.stop_bits = static_cast<unsigned>(section.choice("stop_bits", compoway ? 2 : 1, { 1, 2 }));
+  serial.stop_bits = static_cast<unsigned>(section.integerOf("stop_bits", { 1, 2 }, compoway ? 2 : 1));
   serial.transmission = compoway ? wire::Transmission::Plain : wire::Transmission::Modbus;
   serial.rs485 = readRs485(section);
   serial.exclusive = bus.exclusive;
@@ -110,7 +109,10 @@ void readPauseInReply(const Section& section, BusConfig& bus)
 {
   const double least = toSeconds(makeTiming(bus).patience(0.0));
   const double most = std::max(least, bus.response_timeout);
-  bus.pause_in_reply = section.number("pause_in_reply", Range{ least, most, false, "s (response_timeout)" });
+  if (const auto pause = section.find("pause_in_reply"))
+  {
+    bus.pause_in_reply = pause->number({ least, most, false, "s (response_timeout)" });
+  }
 }
 
 BusConfig readBus(const Section& section)
@@ -118,18 +120,19 @@ BusConfig readBus(const Section& section)
   BusConfig bus;
   readPort(section, bus);
   bus.protocol = readProtocol(section, bus);
-  bus.interval = section.number("interval", bus.interval, Range{ 0.0, 655.35, false, "s" });
-  bus.response_timeout = section.number("response_timeout", bus.response_timeout, Range{ 0.0, 10.0, true, "s" });
-  bus.gateway_timeout = section.number("gateway_timeout", bus.gateway_timeout, Range{ 0.0, 60.0, true, "s" });
+  bus.interval = section.number("interval", { 0.0, 655.35, false, "s" }, bus.interval);
+  bus.slow_interval = section.number("slow_interval", { 0.0, 3600.0, false, "s" }, bus.slow_interval);
+  bus.response_timeout = section.number("response_timeout", { 0.0, 10.0, true, "s" }, bus.response_timeout);
+  bus.gateway_timeout = section.number("gateway_timeout", { 0.0, 60.0, true, "s" }, bus.gateway_timeout);
   bus.limit = readLimit(section, bus.limit);
-  bus.retries = static_cast<int>(section.integer("retries", bus.retries, 0, 10));
-  bus.offline_after = static_cast<int>(section.integer("offline_after", bus.offline_after, 1, 100));
-  bus.exclusive = section.boolean("exclusive", bus.exclusive);
-  bus.realtime_priority = static_cast<int>(section.integer("realtime_priority", bus.realtime_priority, 0, 99));
-  bus.idle_divisor = static_cast<int>(section.integer("idle_divisor", bus.idle_divisor, 1, 1000));
+  bus.retries = static_cast<int>(section.integer("retries", 0, 10, bus.retries));
+  bus.offline_after = static_cast<int>(section.integer("offline_after", 1, 100, bus.offline_after));
+  bus.exclusive = section.flag("exclusive", bus.exclusive);
+  bus.realtime_priority = static_cast<int>(section.integer("realtime_priority", 0, 99, bus.realtime_priority));
+  bus.idle_divisor = static_cast<int>(section.integer("idle_divisor", 1, 1000, bus.idle_divisor));
   bus.parameters_read_only =
-      section.choice("parameter_access", "read_write", { "read_write", "read_only" }) == "read_only";
-  bus.trace_directory = section.text("trace_directory", bus.trace_directory);
+      section.choice("parameter_access", { "read_write", "read_only" }, "read_write") == "read_only";
+  bus.trace_directory = section.filledText("trace_directory", bus.trace_directory);
   bus.serial = readSerial(section, bus);
   readPauseInReply(section, bus);
   return bus;
@@ -160,8 +163,8 @@ void checkSetting(const Section& section, const std::string& key, const Setting&
   {
     names.push_back(settingText(value));
   }
-  section.fail(key, settingText(setting) + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
-               util::joined(names));
+  fail(section, key, settingText(setting) + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
+       util::joined(names));
 }
 
 void checkSerial(const Section& section, const wire::SerialSettings& serial, const InverterConfig& inverter,
@@ -178,8 +181,8 @@ void checkSerial(const Section& section, const wire::SerialSettings& serial, con
       std::to_string(serial.data_bits) + wire::parityLetter(serial.parity) + std::to_string(serial.stop_bits);
   if (!profile.characters.empty() && profile.characters.count(character) == 0)
   {
-    section.fail("stop_bits", character + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
-                 util::joined(profile.characters));
+    fail(section, "stop_bits", character + " can't be used by " + inverter.name + " (" + inverter.drive + ")",
+         util::joined(profile.characters));
   }
 }
 
@@ -189,11 +192,11 @@ void checkUnique(const Section& entry, const InverterConfig& inverter, const std
   {
     if (other.config.name == inverter.name)
     {
-      entry.fail("name", "stands twice (node " + std::to_string(other.config.node) + " has it too)", "unique names");
+      fail(entry, "name", "is used twice (node " + std::to_string(other.config.node) + " has it too)", "unique names");
     }
     if (other.config.node == inverter.node)
     {
-      entry.fail("node", "stands twice (" + other.config.name + " has it too)", "unique station numbers");
+      fail(entry, "node", "is used twice (" + other.config.name + " has it too)", "unique station numbers");
     }
   }
 }
@@ -207,8 +210,8 @@ void checkAlone(const std::vector<Section>& entries, const std::vector<Configure
     const InverterConfig& inverter = inverters[i].config;
     if (inverter.ownPort() && (inverter.node == 0 || inverter.node == 255))
     {
-      entries[i].fail("node", "is for a drive with an Ethernet port of its own, and there are others on this bus",
-                      "0 and 255 only as the single entry of scan_list; 1 to 247 behind a gateway");
+      fail(entries[i], "node", "is for a drive with an Ethernet port of its own, and there are others on this bus",
+           "0 and 255 only as the single entry of scan_list; 1 to 247 behind a gateway");
     }
   }
 }
@@ -226,39 +229,42 @@ Configuration inNodeOrder(BusConfig bus, std::vector<ConfiguredInverter> inverte
   }
   return configuration;
 }
-/// Below the node's name may lie what was meant for others: a helper node's parameters, a name that a launch file gives to all
-/// nodes. What resembles a key of ours stays, to be refused.
-Section withoutForeignKeys(const Value& parameters, const std::string& place, const std::shared_ptr<Remarks>& remarks)
+
+/// Parameters below the node's name may be meant for other nodes: those of a helper node, or one that a launch file gives to all
+/// nodes. Any that resembles one of this node's keys stays, to be refused.
+void dropForeignKeys(Value& parameters, std::vector<std::string>& remarks)
 {
-  Value ours = parameters;
-  for (auto entry = ours.map.begin(); entry != ours.map.end();)
-  {
-    const std::string& key = entry->first;
+  const auto foreign = [&parameters, &remarks](const config::Entry& entry) {
     const auto& known = busKeys();
-    const bool unknown = std::find(known.begin(), known.end(), key) == known.end();
-    const bool foreign = unknown && !isLibraryKey(key) && remarkOn(key).empty();
-    if (foreign)
+    const bool unknown = std::find(known.begin(), known.end(), entry.key) == known.end();
+    const bool drop = unknown && !isLibraryKey(entry.key) && remarkOn(entry.key).empty();
+    if (drop)
     {
-      remarks->push_back(drive::oneLine(place + ": parameter '" + util::printable(key) +
-                                        "' = " + describe(entry->second) +
-                                        " is none of this node's and is ignored (another node's, or one that a launch "
-                                        "file sets for all of them)"));
+      remarks.push_back(drive::oneLine(parameters.place + ": parameter '" + util::printable(entry.key) +
+                                       "' = " + describe(entry.value) +
+                                       " does not belong to this node and is ignored (another node's, or one that a "
+                                       "launch file sets for all nodes)"));
     }
-    entry = foreign || isLibraryKey(key) ? ours.map.erase(entry) : std::next(entry);
-  }
-  return Section(ours, place, remarks);
+    return drop || isLibraryKey(entry.key);
+  };
+  parameters.map.erase(std::remove_if(parameters.map.begin(), parameters.map.end(), foreign), parameters.map.end());
 }
 }  // namespace
 
-Configuration readConfiguration(const Value& parameters, const std::string& place, const std::string& profile_directory)
+Configuration readConfiguration(Value parameters, const std::string& place, const std::string& profile_directory)
 {
-  const auto remarks = std::make_shared<Remarks>();
-  const Section section = withoutForeignKeys(parameters, place, remarks);
-  section.refuseUnknownKeys(busKeys());
+  Refusals refusals;
+  parameters.moveTo(place);
+  dropForeignKeys(parameters, refusals.remarks);
+  const Section section = sectionOf(parameters, refusals);
+  section.allowOnly(busKeys());
   BusConfig bus = readBus(section);
   std::vector<ConfiguredInverter> inverters;
   // "~scan_list[0]" is how ROS writes a private parameter; a file name wants a separator.
-  const std::vector<Section> entries = readScanList(section, place == "~" ? place : place + ": ");
+  const std::vector<Value> scan_list = readScanList(section, place == "~" ? place : place + ": ");
+  std::vector<Section> entries;
+  std::transform(scan_list.begin(), scan_list.end(), std::back_inserter(entries),
+                 [&refusals](const Value& entry) { return sectionOf(entry, refusals); });
   for (const Section& entry : entries)
   {
     ConfiguredInverter inverter = readInverter(entry, bus, profile_directory);
@@ -268,7 +274,7 @@ Configuration readConfiguration(const Value& parameters, const std::string& plac
   }
   checkAlone(entries, inverters);
   Configuration configuration = inNodeOrder(std::move(bus), std::move(inverters));
-  configuration.warnings = *remarks;
+  configuration.warnings = refusals.remarks;
   return configuration;
 }
 }  // namespace bus

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "bus/configuration/configuration_section.h"
+#include "bus/configuration/configuration_refusals.h"
 #include "inverter_bus/drive/drive.h"
 
 namespace inverter_bus

@@ -3,8 +3,8 @@
 #include "bus/configuration/configuration_keys.h"
 
 #include <algorithm>
-#include <cctype>
-#include <cstddef>
+
+#include "config/complaints.h"
 
 namespace inverter_bus
 {
@@ -19,10 +19,10 @@ bool contains(const Keys& keys, const std::string& key)
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-/// Of the contract, for a version to come: ignored they would promise what nobody does.
+/// Keys that the contract has for a later version: to ignore them would promise what is not done.
 const Keys& laterKeys()
 {
-  static const Keys KEYS{ "slow_interval", "in_service", "parameters", "parameters_on_difference" };
+  static const Keys KEYS{ "in_service", "parameters", "parameters_on_difference" };
   return KEYS;
 }
 
@@ -47,94 +47,12 @@ const Keys& simulationKeys()
   return KEYS;
 }
 
-/// Parameters that many ROS nodes have, and that a launch file sets at its top level for all of them; they are not ours although
-/// `baud_rate` shares a word with them.
+/// Parameters that many ROS nodes have, and that a launch file sets at its top level for all of them; they are not this node's,
+/// although `baud_rate` shares a word with them.
 bool isOrdinaryRosName(const std::string& key)
 {
   static const Keys NAMES{ "rate", "publish_rate", "update_rate", "loop_rate", "control_rate" };
   return contains(NAMES, key);
-}
-
-/// "commandTimeout-x" as command, timeout, x.
-Keys wordsOf(const std::string& key)
-{
-  Keys words(1);
-  bool lower = false;
-  for (const char c : key)
-  {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool part = std::isalnum(byte) != 0;
-    if (!part || (lower && std::isupper(byte) != 0))
-    {
-      words.emplace_back();
-    }
-    lower = std::islower(byte) != 0;
-    if (part)
-    {
-      words.back() += static_cast<char>(std::tolower(byte));
-    }
-  }
-  words.erase(std::remove(words.begin(), words.end(), std::string()), words.end());
-  return words;
-}
-
-/// Insertions, deletions and replacements that make \p b of \p a (Levenshtein).
-std::size_t distance(const std::string& a, const std::string& b)
-{
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j)
-  {
-    row[j] = j;
-  }
-  for (std::size_t i = 1; i <= a.size(); ++i)
-  {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j)
-    {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({ row[j] + 1, row[j - 1] + 1, replaced });
-    }
-  }
-  return row[b.size()];
-}
-
-std::string lowerCase(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
-/// The nearest of \p known that is at most two letters away, else one with a word in common; empty: none.
-std::string nearest(const std::string& key, const Keys& known)
-{
-  constexpr std::size_t SLIPS = 2;
-  constexpr std::size_t LONGEST_KEY = 100;  // none of ours is half as long
-  if (key.size() > LONGEST_KEY)
-  {
-    return "";
-  }
-  const std::string lower = lowerCase(key);
-  std::string best;
-  std::size_t best_distance = SLIPS + 1;
-  for (const std::string& candidate : known)
-  {
-    const std::size_t steps = distance(lower, candidate);
-    if (steps < best_distance)
-    {
-      best = candidate;
-      best_distance = steps;
-    }
-  }
-  const Keys words = wordsOf(key);
-  for (auto candidate = known.begin(); best.empty() && candidate != known.end(); ++candidate)
-  {
-    const Keys others = wordsOf(*candidate);
-    best =
-        std::find_first_of(words.begin(), words.end(), others.begin(), others.end()) == words.end() ? "" : *candidate;
-  }
-  return best;
 }
 
 Keys allKeys()
@@ -159,6 +77,7 @@ const Keys& busKeys()
                           "stop_bits",
                           "rs485",
                           "interval",
+                          "slow_interval",
                           "response_timeout",
                           "gateway_timeout",
                           "pause_in_reply",
@@ -217,11 +136,11 @@ std::string remarkOn(const std::string& key)
 {
   if (contains(laterKeys(), key))
   {
-    return "a later version offers it, this one does not yet";
+    return "a later version will have it; this one does not";
   }
   if (contains(entryKeys(), key))
   {
-    return "it belongs into scan_list or defaults";
+    return "it belongs in scan_list or defaults";
   }
   if (contains(busKeys(), key))
   {
@@ -229,9 +148,9 @@ std::string remarkOn(const std::string& key)
   }
   if (contains(simulationKeys(), key))
   {
-    return "it belongs into simulation";
+    return "it belongs in simulation";
   }
-  const std::string meant = isOrdinaryRosName(key) ? "" : nearest(key, allKeys());
+  const std::string meant = isOrdinaryRosName(key) ? "" : config::nearest(key, allKeys());
   return meant.empty() ? "" : "did you mean '" + meant + "'?";
 }
 }  // namespace bus

@@ -22,8 +22,8 @@ const std::vector<std::string>& entryKeys();
 /// Parameters that lie below the node's name and belong to a library in it (diagnostic_updater).
 bool isLibraryKey(const std::string& key);
 
-/// What to say of \p key, which is unknown where it stands: that a later version offers it, that it belongs elsewhere, which one may
-/// be meant. Empty: it resembles none of ours at any level, so that it was not meant for us.
+/// The hint for \p key, which is unknown where it is given: a later version will have it, it belongs elsewhere, or which one may be
+/// meant. Empty: it resembles no key of this node at any level, so it was not meant for this node.
 std::string remarkOn(const std::string& key);
 }  // namespace bus
 }  // namespace inverter_bus

@@ -25,7 +25,7 @@ std::uint32_t maskFromInteger(const Section& bus, std::int64_t number)
 {
   if (number < std::numeric_limits<std::int32_t>::min() || number > std::numeric_limits<std::uint32_t>::max())
   {
-    bus.fail(SCAN_LIST, "has more than 32 bits", MASK_FORMS);
+    fail(bus, SCAN_LIST, "has more than 32 bits", MASK_FORMS);
   }
   return static_cast<std::uint32_t>(number);
 }
@@ -36,47 +36,29 @@ std::uint32_t maskFromText(const Section& bus, const std::string& text)
   std::smatch match;
   if (!std::regex_match(text, match, HEXADECIMAL))
   {
-    bus.fail(SCAN_LIST, "is no bit mask", MASK_FORMS);
+    fail(bus, SCAN_LIST, "is not a bit mask", MASK_FORMS);
   }
   return static_cast<std::uint32_t>(std::strtoul(match[2].str().c_str(), nullptr, 16));
 }
 
-Value integerValue(std::int64_t number)
+std::vector<Value> entriesFromMask(const Section& bus, std::uint32_t mask, const Value& defaults)
 {
-  Value value;
-  value.type = Value::Type::Integer;
-  value.integer = number;
-  return value;
-}
-
-Value textValue(const std::string& text)
-{
-  Value value;
-  value.type = Value::Type::Text;
-  value.text = text;
-  return value;
-}
-
-std::vector<Section> entriesFromMask(const Section& bus, std::uint32_t mask, const Section& defaults)
-{
-  std::vector<Section> entries;
+  std::vector<Value> entries;
   for (int node = 1; node <= 31; ++node)
   {
     if ((mask >> node & 1U) == 0)
     {
       continue;
     }
-    Value entry;
-    entry.type = Value::Type::Map;
-    entry.map["name"] = textValue("inverter_" + std::to_string(node));
-    entry.map["node"] = integerValue(node);
-    entries.emplace_back(entry, bus.placeOf(SCAN_LIST) + " station " + std::to_string(node) + " of scan_list",
-                         bus.remarks());
+    const std::string station = std::to_string(node);
+    entries.push_back(
+        Value::ofMap({ { "name", Value::ofText("inverter_" + station) }, { "node", Value::ofInteger(node) } }));
+    entries.back().moveTo(bus.spot(SCAN_LIST).place + " station " + station + " of scan_list");
     entries.back().inherit(defaults);
   }
   if (entries.empty())
   {
-    bus.fail(SCAN_LIST, "names no station (bit 0 does not count)", MASK_FORMS);
+    fail(bus, SCAN_LIST, "names no station (bit 0 does not count)", MASK_FORMS);
   }
   return entries;
 }
@@ -84,49 +66,42 @@ std::vector<Section> entriesFromMask(const Section& bus, std::uint32_t mask, con
 /// "~scan_list[2] (belt_outfeed)".
 std::string entryPlace(const std::string& place, std::size_t index, const Value& entry)
 {
-  std::string text = place + "scan_list[" + std::to_string(index) + "]";
-  const auto name = entry.map.find("name");
-  if (name != entry.map.end() && name->second.type == Value::Type::Text)
-  {
-    text += " (" + util::printable(name->second.text) + ")";
-  }
-  return text;
+  const Value* name = entry.find("name");
+  const bool named = name != nullptr && name->type == Value::Type::Text;
+  return place + "scan_list[" + std::to_string(index) + "]" + (named ? " (" + util::printable(name->text) + ")" : "");
 }
 
-std::vector<Section> entriesFromList(const Section& bus, const std::vector<Value>& list, const Section& defaults,
-                                     const std::string& place)
+std::vector<Value> entriesFromList(const Section& bus, std::vector<Value> entries, const Value& defaults,
+                                   const std::string& place)
 {
-  if (list.empty())
+  if (entries.empty())
   {
-    bus.fail(SCAN_LIST, "is empty", MASK_FORMS);
+    fail(bus, SCAN_LIST, "is empty", MASK_FORMS);
   }
-  std::vector<Section> entries;
-  for (std::size_t i = 0; i < list.size(); ++i)
+  for (std::size_t i = 0; i < entries.size(); ++i)
   {
-    entries.emplace_back(list[i], entryPlace(place, i, list[i]), bus.remarks());
-    entries.back().refuseUnknownKeys(entryKeys());
-    entries.back().inherit(defaults);
+    entries[i].moveTo(entryPlace(place, i, entries[i]));
+    sectionOf(entries[i], bus.cursor().complaints()).allowOnly(entryKeys());
+    entries[i].inherit(defaults);
   }
   return entries;
 }
 
-Section readDefaults(const Section& bus, const std::string& place)
+Value readDefaults(const Section& bus, const std::string& place)
 {
-  Value none;
-  none.type = Value::Type::Map;
-  const Value* value = bus.find("defaults");
-  const bool given = value != nullptr && value->type != Value::Type::None;
-  Section defaults(given ? *value : none, place + "defaults", bus.remarks());
-  defaults.refuseUnknownKeys(sharedKeys());
+  const auto given = bus.find("defaults");
+  Value defaults = given && given->value().type != Value::Type::None ? given->value() : Value::ofMap({});
+  defaults.moveTo(place + "defaults");
+  sectionOf(defaults, bus.cursor().complaints()).allowOnly(sharedKeys());
   return defaults;
 }
 }  // namespace
 
-std::vector<Section> readScanList(const Section& bus, const std::string& place)
+std::vector<Value> readScanList(const Section& bus, const std::string& place)
 {
   bus.require(SCAN_LIST, MASK_FORMS);
-  const Section defaults = readDefaults(bus, place);
-  const Value& value = *bus.find(SCAN_LIST);
+  const Value defaults = readDefaults(bus, place);
+  const Value& value = bus.find(SCAN_LIST)->value();
   switch (value.type)
   {
     case Value::Type::List:
@@ -136,7 +111,7 @@ std::vector<Section> readScanList(const Section& bus, const std::string& place)
     case Value::Type::Text:
       return entriesFromMask(bus, maskFromText(bus, value.text), defaults);
     default:
-      bus.fail(SCAN_LIST, "is neither a list nor a bit mask", MASK_FORMS);
+      fail(bus, SCAN_LIST, "is neither a list nor a bit mask", MASK_FORMS);
   }
 }
 }  // namespace bus

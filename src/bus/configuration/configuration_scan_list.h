@@ -5,15 +5,15 @@
 
 #include <vector>
 
-#include "bus/configuration/configuration_section.h"
+#include "bus/configuration/configuration_refusals.h"
 
 namespace inverter_bus
 {
 namespace bus
 {
-/// Brings both forms of `scan_list` (list of maps, bit mask) to one: a section per inverter with the `defaults` in it. Keys
-/// are known, values not judged yet.
-std::vector<Section> readScanList(const Section& bus, const std::string& place);
+/// Brings both forms of `scan_list` (list of maps, bit mask) to one: a map per inverter with the `defaults` in it, each value with
+/// its place. Keys are known, values not judged yet.
+std::vector<Value> readScanList(const Section& bus, const std::string& place);
 }  // namespace bus
 }  // namespace inverter_bus
 

@@ -40,14 +40,9 @@ void DriveSettings::reread(const std::string& parameter)
   }
 }
 
-void DriveSettings::commanded()
+void DriveSettings::underCommand(bool in_force)
 {
-  settings_.commanded();
-}
-
-void DriveSettings::released()
-{
-  settings_.released();
+  in_force ? settings_.commanded() : settings_.released();
 }
 
 /// The step of the sequence `connect` that is due: a drive that is another one than expected is told nothing, and what tells
@@ -81,6 +76,11 @@ bool DriveSettings::pending() const
 bool DriveSettings::nextWrites() const
 {
   return leave_setup_ || (!identity_.next() && connectStep() != nullptr);
+}
+
+bool DriveSettings::repeats() const
+{
+  return !urgent() && settings_.nextRepeats();
 }
 
 wire::Request DriveSettings::next() const

@@ -43,6 +43,9 @@ public:
   bool pending() const;
   /// next() writes.
   bool nextWrites() const;
+  /// next() asks for what was told before, or refused for the moment: it takes from the share of the slow values
+  /// (contract, 8.3).
+  bool repeats() const;
   wire::Request next() const;
   void done(const wire::Reply& reply);
   /// How long the next exchange of the lowest class is to wait: 0, or, when all that is left was refused for the moment,
@@ -50,10 +53,9 @@ public:
   Duration pauseBeforeNext() const;
   /// A parameter was written through the node: what it means may have changed.
   void reread(const std::string& parameter);
-  /// A command of ours is in force: who commands the drive can be seen only now. Again: it is looked at anew.
-  void commanded();
-  /// A stop of ours was confirmed: what was seen under command counts no more.
-  void released();
+  /// A command of ours is \p in_force: who commands the drive can be seen only now; again: it is looked at anew. False: a stop
+  /// of ours was confirmed, and what was seen under command counts no more.
+  void underCommand(bool in_force);
 
   Identity identity() const;
   /// Why the drive gets no command but a stop: it is the wrong one, or has not told yet what it is; empty: it is right.

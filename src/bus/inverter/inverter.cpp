@@ -207,9 +207,14 @@ void Inverter::parameterWritten(const std::string& name)
   }
 }
 
-bool Inverter::inSetup() const
+Holds Inverter::holds() const
 {
-  return services.setupOpen() || settings.leavingSetup();
+  Holds holds;
+  holds.stop = stop.held();
+  holds.unidentified = settings.identity() == Identity::Unknown;
+  holds.resetting = services.resetting();
+  holds.in_setup = services.setupOpen() || settings.leavingSetup();
+  return holds;
 }
 
 bool Inverter::mayRepeatWords(TimePoint now) const
@@ -241,9 +246,9 @@ Judgement Inverter::statusComplete(TimePoint now)
   record.restart();
   interlock.online(now);
   Judgement judgement = compare(now, refresh.fresh(), true);
-  if (evidence.takeSourceDue(now, movement))
+  if (evidence.takeSourceDue(now, movement, refresh.reads().slowPeriod()))
   {
-    settings.commanded();
+    settings.underCommand(true);
   }
   return judgement;
 }
@@ -312,14 +317,16 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
 
 // --- status ----------------------------------------------------------------------------------------------------------
 
-Obstacles Inverter::obstacles() const
+Obstacles Inverter::obstacles(TimePoint now) const
 {
+  const Holds held = holds();
   Obstacles obstacles;
+  obstacles.locked = interlock.locked(now, held);
   obstacles.offline = link.offline();
   obstacles.tripped = interlock.isFaulted();
   obstacles.stop_pending = interlock.stopPending();
-  obstacles.reset_active = services.resetting();
-  obstacles.in_setup = inSetup();
+  obstacles.reset_active = held.resetting;
+  obstacles.in_setup = held.in_setup;
   obstacles.wrong_drive = settings.identity() != Identity::Right;
   return obstacles;
 }

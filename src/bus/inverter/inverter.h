@@ -117,10 +117,10 @@ public:
   // --- answers ------------------------------------------------------------------------------------------------------
   /// The motor may turn, as far as anybody can tell.
   bool mayRun() const;
-  /// A parameter is being written in the drive's setup area, where it can't run.
-  bool inSetup() const;
-  /// What stands in the way of a velocity now; locked is not asked for.
-  Obstacles obstacles() const;
+  /// What bars velocities as long as it lasts, for the interlock.
+  Holds holds() const;
+  /// What stands in the way of a velocity now.
+  Obstacles obstacles(TimePoint now) const;
   /// What the scheduler must know of it.
   InverterView view(TimePoint now, Duration deadline_margin) const;
 

@@ -11,6 +11,39 @@ namespace
 // A value that the drive refuses is asked for again after this time (a parameter lock may have been lifted).
 constexpr double LEFT_OUT_S = 30.0;
 constexpr double POSTPONED_S = 0.5;
+constexpr std::uint8_t NO_SUCH_ADDRESS = 0x02;
+
+/// Some number in the read is none of the drive's, and never will be.
+bool isHole(const wire::Reply& reply)
+{
+  return reply.pdu.size() > 1 && reply.pdu[1] == NO_SUCH_ADDRESS;
+}
+
+/// The drive's warning word has a reason to be another one.
+bool warns(const drive::Monitor& before, const drive::Monitor& now)
+{
+  const auto changed = [](const std::optional<bool>& one, const std::optional<bool>& other) {
+    return one && other && *one != *other;
+  };
+  return changed(before.overload_warning, now.overload_warning) || changed(before.tripped(), now.tripped());
+}
+
+/// The refresh under way starts again.
+bool backToDirectReads(Refresh& refresh, ChosenBlock& chosen)
+{
+  refresh.useBlock(std::nullopt);
+  chosen.drop();
+  return true;
+}
+
+/// The same from the register map.
+bool backToPlainReads(std::vector<std::size_t>& plan, MappedReads& mapped, StatusReads& reads)
+{
+  plan.clear();
+  mapped.drop();
+  reads.change(std::nullopt, {});
+  return true;
+}
 }  // namespace
 
 Refresh::Refresh(const drive::Drive& drive) : drive_(drive), reads_(drive), chosen_(drive)
@@ -32,6 +65,16 @@ void Refresh::useBlock(const std::optional<drive::ReadBlock>& block)
   }
 }
 
+const ChosenBlock& Refresh::chosen() const
+{
+  return chosen_;
+}
+
+ChosenBlock& Refresh::chosen()
+{
+  return chosen_;
+}
+
 void Refresh::useMap(const std::function<MapOrders()>& orders)
 {
   if (plan_.empty() && mapped_.take(orders()))
@@ -46,40 +89,11 @@ MappedReads& Refresh::mapped()
   return mapped_;
 }
 
-const ChosenBlock& Refresh::chosen() const
-{
-  return chosen_;
-}
-
-ChosenBlock& Refresh::chosen()
-{
-  return chosen_;
-}
-
-/// Back to direct reads from the block or the map that is in use; the refresh under way starts again.
-bool Refresh::dropBlock()
-{
-  if (atHand().block.chosen.empty())
-  {
-    plan_.clear();
-    mapped_.drop();
-    reads_.change(std::nullopt, {});
-    return true;
-  }
-  useBlock(std::nullopt);
-  chosen_.drop();
-  return true;
-}
-
-StatusRead& Refresh::atHand()
-{
-  return reads_[plan_.front()];
-}
-
-void Refresh::plan(TimePoint now)
+void Refresh::plan(TimePoint now, const SlowLeave& leave)
 {
   draft_.restart();
-  plan_ = slow_.take(reads_, now, !last_.stamp);
+  reads_.planPeriod(leave.period);
+  plan_ = slow_.take(reads_, now, !last_.stamp, leave);
   const std::vector<std::size_t> fast = reads_.open(StatusRead::Kind::Fast, now);
   plan_.insert(plan_.end(), fast.begin(), fast.end());
   const std::vector<std::size_t> proof = reads_.open(StatusRead::Kind::Proof, now);
@@ -98,14 +112,19 @@ bool Refresh::takeRefusal()
   return refused;
 }
 
-const drive::ReadBlock& Refresh::next(TimePoint now)
+const StatusRead& Refresh::asked() const
+{
+  return reads_[plan_.front()];
+}
+
+const drive::ReadBlock& Refresh::next(TimePoint now, const SlowLeave& leave)
 {
   asked_at_ = now;
   if (plan_.empty())
   {
-    plan(now);
+    plan(now, leave);
   }
-  return atHand().block;
+  return asked().block;
 }
 
 bool Refresh::advance()
@@ -124,6 +143,10 @@ bool Refresh::advance()
     // Every read was refused, or every one that tells whether the motor runs: that is no status.
     return false;
   }
+  if (warns(last_.words.monitor, draft_.words().monitor))
+  {
+    slow_.askForWarning();
+  }
   last_.words = draft_.words();
   if (!last_.words.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
   {
@@ -138,7 +161,7 @@ bool Refresh::advance()
 
 bool Refresh::received(const wire::Reply& reply)
 {
-  StatusRead& read = atHand();
+  StatusRead& read = reads_[plan_.front()];
   if (read.kind == StatusRead::Kind::Proof)
   {
     drive::Monitor values;
@@ -148,55 +171,61 @@ bool Refresh::received(const wire::Reply& reply)
   }
   if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, last_.words.monitor))
   {
-    return dropBlock();
+    return backToDirectReads(*this, chosen_);
   }
   read.values = drive::Monitor();
   drive_.decode(read.block, reply.pdu, read.values, ratings_);
   if (!read.block.mirrors.empty() && !mapped_.accepts(read.values))
   {
-    return dropBlock();
+    return backToPlainReads(plan_, mapped_, reads_);
   }
+  read.period = read.ever ? reply.finished_at - read.last : Duration{ 0 };
+  read.took = reply.finished_at - reply.sent_at;
   read.last = reply.finished_at;
   read.ever = true;
   slow_.noteRestart(read.values);
+  slow_.noteWarning(read);
   draft_.take(read, reply);
   return advance();
 }
 
 bool Refresh::refused(const wire::Reply& reply)
 {
-  if (!atHand().block.mirrors.empty())
+  if (!asked().block.mirrors.empty())
   {
-    const bool proof = atHand().kind == StatusRead::Kind::Proof;
     mapped_.refused();
-    // The status of this refresh is there already, or is read plainly.
-    plan_.resize(proof ? 1 : plan_.size());
-    return proof ? advance() : dropBlock();
+    if (asked().kind != StatusRead::Kind::Proof)
+    {
+      return backToPlainReads(plan_, mapped_, reads_);
+    }
+    // The status of this refresh is there already.
+    plan_.resize(1);
+    return advance();
   }
   const bool lasting = isLastingRefusal(reply);
-  if (!atHand().block.chosen.empty() && chosen_.refused(lasting))
+  if (!asked().block.chosen.empty() && chosen_.refused(lasting))
   {
-    return dropBlock();
+    return backToDirectReads(*this, chosen_);
   }
   if (!lasting)
   {
     // Busy, or locked for the moment: nothing is known, and nothing follows for later refreshes.
     return postpone();
   }
-  if (atHand().block.fields.empty())
+  if (asked().block.fields.empty())
   {
     // A keep-alive that is refused was heard all the same.
     draft_.heard(reply.finished_at);
     return advance();
   }
-  if (reads_.split(plan_.front()))
+  if (reads_.split(plan_.front(), isHole(reply)))
   {
     // The plan's numbers moved: this refresh starts again with the smaller reads.
     plan_.clear();
     return true;
   }
   // A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
-  StatusRead& read = atHand();
+  StatusRead& read = reads_[plan_.front()];
   read.values = drive::Monitor();
   if (read.tellsRun() && !reads_.othersTellRun(plan_.front(), reply.finished_at))
   {
@@ -210,7 +239,7 @@ bool Refresh::refused(const wire::Reply& reply)
 
 bool Refresh::skipSlow()
 {
-  const StatusRead& read = atHand();
+  const StatusRead& read = asked();
   const bool last = plan_.size() < 2;
   return read.kind == StatusRead::Kind::Slow && !slow_.waitedFor(read) && !last && postpone();
 }
@@ -218,7 +247,7 @@ bool Refresh::skipSlow()
 /// The read at hand is not to be had now. Without a slow one the refresh goes on, without a fast one it has no result.
 bool Refresh::postpone()
 {
-  StatusRead& read = atHand();
+  StatusRead& read = reads_[plan_.front()];
   if (read.kind != StatusRead::Kind::Slow)
   {
     run_refused_ = read.tellsRun();
@@ -232,9 +261,9 @@ bool Refresh::postpone()
 void Refresh::failed()
 {
   // A slow read that gets lost must not stand before the run words of the next refresh again.
-  if (!plan_.empty() && atHand().kind == StatusRead::Kind::Slow)
+  if (!plan_.empty() && asked().kind == StatusRead::Kind::Slow)
   {
-    atHand().left_out_until = asked_at_ + seconds(POSTPONED_S);
+    reads_[plan_.front()].left_out_until = asked_at_ + seconds(POSTPONED_S);
   }
   plan_.clear();
 }
@@ -249,13 +278,18 @@ bool Refresh::takeComplete()
 drive::Monitor Refresh::monitor(TimePoint now) const
 {
   drive::Monitor monitor = last_.words.monitor;
-  reads_.addSlowValues(now, seconds(OLDEST_SLOW_VALUE_S), monitor);
+  reads_.addSlowValues(now, monitor);
   return monitor;
 }
 
 const StatusWords& Refresh::fresh() const
 {
   return last_.words;
+}
+
+bool Refresh::asksForWarning(TimePoint now) const
+{
+  return slow_.asksForWarning(reads_, now);
 }
 
 StatusDraft& Refresh::draft()
@@ -281,8 +315,8 @@ void Refresh::forget()
   slow_.forget();
   chosen_.forget();
   mapped_.forget();
-  // Reads that were split or left out are tried in full again.
-  reads_.build(std::nullopt);
+  // Reads that were left out, or split for another reason than a hole, are tried in full again.
+  reads_.forget();
 }
 
 const StatusReads& Refresh::reads() const

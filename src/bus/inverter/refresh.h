@@ -20,9 +20,9 @@ namespace bus
 {
 /// The status refresh of one inverter: which read is next, and what the drive has said so far with the time of each word.
 ///
-/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and at most one slow block that is
-/// due. Values belong to the stamp only if they came in one refresh; slow ones leave the status when they are older than
-/// one second (contract, section 2).
+/// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and the slow block whose turn it is.
+/// Values belong to the stamp only if they came in one refresh; slow ones have an age of their own (contract, section 2 and
+/// 8.3).
 class Refresh
 {
 public:
@@ -41,8 +41,10 @@ public:
   void useMap(const std::function<MapOrders()>& orders);
   MappedReads& mapped();
 
-  /// The read that is due; starts a new refresh when none is under way.
-  const drive::ReadBlock& next(TimePoint now);
+  /// The read that is due; starts a new refresh when none is under way, with what \p leave allows of slow values.
+  const drive::ReadBlock& next(TimePoint now, const SlowLeave& leave = SlowLeave());
+  /// That read, until its end is told.
+  const StatusRead& asked() const;
 
   /// The drive has just refused a read of its run words that can't be had in another form; true once.
   bool takeRefusal();
@@ -64,6 +66,8 @@ public:
   StatusDraft& draft();
   /// Leaves the read at hand out for a while if it is one of the slow values; false: it is not, or nothing follows it.
   bool skipSlow();
+  /// The drive's warning word is the next slow value to be read, on this bus.
+  bool asksForWarning(TimePoint now) const;
   /// What goes before all other slow values.
   SlowTurns& slow();
   /// Of the last complete refresh; empty: none since the program began.
@@ -74,9 +78,7 @@ public:
   const StatusReads& reads() const;
 
 private:
-  StatusRead& atHand();
-  void plan(TimePoint now);
-  bool dropBlock();
+  void plan(TimePoint now, const SlowLeave& leave);
   bool advance();
   bool postpone();
 

@@ -80,9 +80,10 @@ bool RunEvidence::shows(TimePoint now, const Movement& movement) const
          movement.runConfirmed();
 }
 
-bool RunEvidence::takeSourceDue(TimePoint now, const Movement& movement)
+bool RunEvidence::takeSourceDue(TimePoint now, const Movement& movement, Duration period)
 {
-  const bool due = movement.runConfirmed() && now - source_asked_at_ >= seconds(SOURCE_PERIOD_S);
+  const Duration least = std::max(seconds(SOURCE_PERIOD_S), period);
+  const bool due = movement.runConfirmed() && now - source_asked_at_ >= least;
   source_asked_at_ = due ? now : source_asked_at_;
   return due;
 }

@@ -43,8 +43,8 @@ public:
   /// The last exchange has shown that the motor follows our RUN, and so lately that the drive can't have lost it since.
   bool shows(TimePoint now, const Movement& movement) const;
   /// Who commands the drive is to be read again, since a panel or a terminal may take it over at any time. True once in 5 s
-  /// while a RUN of ours is in force.
-  bool takeSourceDue(TimePoint now, const Movement& movement);
+  /// while a RUN of ours is in force, or once in \p period where that is longer (contract, 8.3).
+  bool takeSourceDue(TimePoint now, const Movement& movement, Duration period);
 
 private:
   bool followsTarget(const drive::Monitor& words, const Movement& movement);

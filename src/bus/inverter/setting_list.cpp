@@ -94,11 +94,13 @@ bool SettingList::due(const Setting& setting) const
 
 const Setting* SettingList::next() const
 {
-  // One that the drive could not tell just now lets the others go first.
+  // One that the drive could not tell just now lets the others go first, one that repeats those that were not told yet.
   const auto found =
       std::min_element(settings_.begin(), settings_.end(), [this](const Setting& one, const Setting& other) {
-        return std::make_tuple(!due(one), !one.urgent, one.refusals) <
-               std::make_tuple(!due(other), !other.urgent, other.refusals);
+        const auto claim = [this](const Setting& setting) {
+          return std::make_tuple(!due(setting), !setting.urgent, setting.refusals, setting.told != Told::NotYet);
+        };
+        return claim(one) < claim(other);
       });
   return found == settings_.end() || !due(*found) ? nullptr : &*found;
 }
@@ -150,6 +152,12 @@ void SettingList::released()
 bool SettingList::underCommand() const
 {
   return commanded_;
+}
+
+bool SettingList::nextRepeats() const
+{
+  const Setting* setting = next();
+  return setting != nullptr && setting->told != Told::NotYet;
 }
 
 bool SettingList::urgent() const

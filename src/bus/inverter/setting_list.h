@@ -59,6 +59,8 @@ public:
 
   /// The next one to be read; null: none.
   const Setting* next() const;
+  /// It was told before, or refused for the moment.
+  bool nextRepeats() const;
   /// The answer to it.
   void done(const wire::Reply& reply);
   /// One is to be read before the first status.

@@ -3,7 +3,6 @@
 #include "bus/inverter/slow_turns.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace inverter_bus
 {
@@ -11,8 +10,17 @@ namespace bus
 {
 namespace
 {
-// A slow value is read again in the refresh whose status it would be too old for; one goes per refresh, so they stagger.
-constexpr double SLOW_MARGIN_S = 0.1;
+// What decides over safety is read again in the refresh whose status it would be too old for.
+constexpr double GUARD_PERIOD_S = 0.9;
+constexpr const char* WARNING = "warning_code";
+
+/// In order, beginning with the first that is not before \p cursor.
+std::vector<std::size_t> fromCursor(std::vector<std::size_t> indices, std::size_t cursor)
+{
+  const auto begin = std::find_if(indices.begin(), indices.end(), [&](std::size_t index) { return index >= cursor; });
+  std::rotate(indices.begin(), begin, indices.end());
+  return indices;
+}
 }  // namespace
 
 void SlowTurns::askForRun()
@@ -35,16 +43,36 @@ void SlowTurns::noteRun(const drive::Monitor& words, bool tells_run)
   run_heard_ = run_heard_ || words.run_seen.has_value() || !tells_run;
 }
 
+void SlowTurns::askForWarning()
+{
+  warning_asked_ = true;
+}
+
+void SlowTurns::noteWarning(const StatusRead& read)
+{
+  warning_asked_ = warning_asked_ && !read.brings(WARNING);
+}
+
+bool SlowTurns::asksForWarning(const StatusReads& reads, TimePoint now) const
+{
+  const std::vector<std::size_t> open =
+      warning_asked_ ? reads.open(StatusRead::Kind::Slow, now) : std::vector<std::size_t>();
+  return std::any_of(open.begin(), open.end(),
+                     [&](std::size_t index) { return reads[index].isSlowed() && reads[index].brings(WARNING); });
+}
+
 void SlowTurns::forget()
 {
   run_heard_ = false;
   restart_suspected_ = false;
+  warning_asked_ = false;
   restart();
 }
 
 void SlowTurns::restart()
 {
   cursor_ = 0;
+  guard_cursor_ = 0;
 }
 
 bool SlowTurns::goesFirst(const StatusRead& read) const
@@ -57,24 +85,58 @@ bool SlowTurns::waitedFor(const StatusRead& read) const
   return !run_heard_ && read.brings("run_seen");
 }
 
-std::vector<std::size_t> SlowTurns::take(const StatusReads& reads, TimePoint now, bool first)
+std::vector<std::size_t> SlowTurns::take(const StatusReads& reads, TimePoint now, bool first, const SlowLeave& leave)
 {
-  std::vector<std::size_t> open = reads.open(StatusRead::Kind::Slow, now);
-  const auto begin = std::find_if(open.begin(), open.end(), [this](std::size_t index) { return index >= cursor_; });
-  std::rotate(open.begin(), begin, open.end());
-  std::vector<std::size_t> taken;
-  std::copy_if(open.begin(), open.end(), std::back_inserter(taken),
-               [&](std::size_t index) { return goesFirst(reads[index]); });
-  const Duration due_age = seconds(OLDEST_SLOW_VALUE_S - SLOW_MARGIN_S);
-  const auto due = std::find_if(open.begin(), open.end(), [&](std::size_t index) {
-    return !reads[index].ever || now - reads[index].last >= due_age;
-  });
-  if (taken.empty() && !first && due != open.end())
+  std::vector<std::size_t> taken = reads.open(StatusRead::Kind::Slow, now);
+  taken.erase(std::remove_if(taken.begin(), taken.end(), [&](std::size_t index) { return !goesFirst(reads[index]); }),
+              taken.end());
+  if (!taken.empty() || first)
   {
-    taken.push_back(*due);
+    return taken;
   }
-  cursor_ = taken.empty() ? cursor_ : taken.back() + 1;
+  for (const auto& one : { takeGuard(reads, now), takeSlowed(reads, now, leave) })
+  {
+    if (one)
+    {
+      taken.push_back(*one);
+    }
+  }
   return taken;
+}
+
+/// One of those that are never slowed.
+std::optional<std::size_t> SlowTurns::takeGuard(const StatusReads& reads, TimePoint now)
+{
+  for (const std::size_t index : fromCursor(reads.open(StatusRead::Kind::Slow, now), guard_cursor_))
+  {
+    const bool due = !reads[index].ever || now - reads[index].last >= seconds(GUARD_PERIOD_S);
+    if (due && !reads[index].isSlowed())
+    {
+      guard_cursor_ = index + 1;
+      return index;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::size_t> SlowTurns::takeSlowed(const StatusReads& reads, TimePoint now, const SlowLeave& leave)
+{
+  if (!leave.open || leave.period <= Duration{ 0 })
+  {
+    return std::nullopt;
+  }
+  const bool warning = asksForWarning(reads, now);
+  for (const std::size_t index : fromCursor(reads.open(StatusRead::Kind::Slow, now), cursor_))
+  {
+    const StatusRead& read = reads[index];
+    const bool due = !read.ever || now - read.last >= leave.period;
+    if (read.isSlowed() && (warning ? read.brings(WARNING) : due))
+    {
+      cursor_ = index + 1;
+      return index;
+    }
+  }
+  return std::nullopt;
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "bus/inverter/merge_monitor.h"
+#include "bus/rules/slow_share.h"
 
 namespace inverter_bus
 {
@@ -13,6 +15,18 @@ namespace bus
 {
 namespace
 {
+// Contract, 8.3: a slow value is shown until it is older than so many of its periods, and for so long in any case.
+constexpr double OLDEST_SLOW_VALUE_PERIODS = 2.5;
+constexpr double OLDEST_SLOW_VALUE_S = 10.0;
+// What decides over safety is never slowed, and leaves sooner.
+constexpr double OLDEST_GUARD_S = 1.0;
+
+bool isSame(const drive::ReadBlock& one, const drive::ReadBlock& other)
+{
+  return one.space == other.space && one.area == other.area && one.number == other.number && one.count == other.count &&
+         one.fields == other.fields && one.chosen == other.chosen;
+}
+
 unsigned lastAddress(const drive::Item& item)
 {
   return item.address + item.size - 1U;
@@ -61,6 +75,11 @@ bool StatusRead::tellsRun() const
   return kind == Kind::Fast && (brings("run_seen") || brings("operation") || brings("running"));
 }
 
+bool StatusRead::isSlowed() const
+{
+  return kind == Kind::Slow && bus::isSlowed(block);
+}
+
 StatusReads::StatusReads(const drive::Drive& drive) : drive_(drive)
 {
   build(std::nullopt);
@@ -68,6 +87,8 @@ StatusReads::StatusReads(const drive::Drive& drive) : drive_(drive)
 
 void StatusReads::build(const std::optional<drive::ReadBlock>& chosen)
 {
+  std::vector<StatusRead> before = std::move(reads_);
+  before.insert(before.end(), shelved_.begin(), shelved_.end());
   reads_.clear();
   add(chosen ? drive_.slowBlocksBeside(*chosen) : drive_.slowBlocks(), StatusRead::Kind::Slow);
   add(drive_.faultBlocks(), StatusRead::Kind::Fault);
@@ -76,21 +97,38 @@ void StatusReads::build(const std::optional<drive::ReadBlock>& chosen)
   {
     add({ *chosen }, StatusRead::Kind::Fast);
   }
+  for (std::size_t index = 0; index < reads_.size(); ++index)
+  {
+    while (holes_.count({ reads_[index].block.address, reads_[index].block.count }) != 0 && halve(index))
+    {
+    }
+  }
+  for (StatusRead& read : reads_)
+  {
+    const auto same = std::find_if(before.begin(), before.end(), [&](const StatusRead& old) {
+      return old.kind == read.kind && isSame(old.block, read.block);
+    });
+    if (same != before.end())
+    {
+      read = *same;
+      read.left_out_until = TimePoint();
+      before.erase(same);
+    }
+  }
+  shelved_ = std::move(before);
 }
 
 void StatusReads::change(const std::optional<drive::ReadBlock>& chosen, const std::vector<drive::ReadBlock>& proof)
 {
-  const std::vector<StatusRead> before = std::move(reads_);
   build(chosen);
   add(proof, StatusRead::Kind::Proof);
-  for (StatusRead& read : reads_)
-  {
-    const auto old = std::find_if(before.begin(), before.end(), [&read](const StatusRead& one) {
-      return one.kind == read.kind && one.block.space == read.block.space && one.block.number == read.block.number &&
-             one.block.count == read.block.count;
-    });
-    read = old == before.end() ? read : *old;
-  }
+}
+
+void StatusReads::forget()
+{
+  reads_.clear();
+  shelved_.clear();
+  build(std::nullopt);
 }
 
 void StatusReads::add(const std::vector<drive::ReadBlock>& blocks, StatusRead::Kind kind)
@@ -104,7 +142,18 @@ void StatusReads::add(const std::vector<drive::ReadBlock>& blocks, StatusRead::K
   }
 }
 
-bool StatusReads::split(std::size_t index)
+bool StatusReads::split(std::size_t index, bool for_good)
+{
+  const auto whole = std::make_pair(reads_[index].block.address, reads_[index].block.count);
+  const bool halved = halve(index);
+  if (halved && for_good)
+  {
+    holes_.insert(whole);
+  }
+  return halved;
+}
+
+bool StatusReads::halve(std::size_t index)
 {
   const std::vector<drive::ReadBlock> halves = splitBlock(drive_, reads_[index].block);
   if (halves.size() < 2)
@@ -171,10 +220,52 @@ std::vector<drive::ReadBlock> StatusReads::blocks(StatusRead::Kind kind) const
   return found;
 }
 
-void StatusReads::addSlowValues(TimePoint now, Duration age, drive::Monitor& monitor) const
+void StatusReads::planPeriod(Duration period)
 {
+  planned_ = period;
+}
+
+Duration StatusReads::slowPeriod() const
+{
+  Duration period = planned_;
   for (const StatusRead& read : reads_)
   {
+    period = read.isSlowed() ? std::max(period, read.period) : period;
+  }
+  return period;
+}
+
+Duration StatusReads::slowNeeds(Duration gap, Duration unread) const
+{
+  Duration needs{ 0 };
+  for (const StatusRead& read : reads_)
+  {
+    const Duration own = read.ever ? gap + read.took : unread;
+    needs += read.isSlowed() ? own : Duration{ 0 };
+  }
+  return needs;
+}
+
+std::optional<Duration> StatusReads::slowAge(TimePoint now) const
+{
+  std::optional<Duration> age;
+  for (const StatusRead& read : reads_)
+  {
+    if (read.isSlowed() && read.ever)
+    {
+      age = std::max(age.value_or(Duration{ 0 }), now - read.last);
+    }
+  }
+  return age;
+}
+
+void StatusReads::addSlowValues(TimePoint now, drive::Monitor& monitor) const
+{
+  const Duration oldest =
+      std::max(seconds(OLDEST_SLOW_VALUE_S), seconds(toSeconds(slowPeriod()) * OLDEST_SLOW_VALUE_PERIODS));
+  for (const StatusRead& read : reads_)
+  {
+    const Duration age = read.isSlowed() ? oldest : seconds(OLDEST_GUARD_S);
     if (read.kind == StatusRead::Kind::Slow && read.ever && now - read.last <= age)
     {
       mergeMonitor(read.values, monitor);

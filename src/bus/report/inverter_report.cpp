@@ -44,10 +44,9 @@ void showError(const Inverter& inverter, TimePoint now, InverterStatus& status)
   }
   else if (inverter.command_error.id() != 0)
   {
-    Obstacles obstacles = inverter.obstacles();
-    obstacles.locked = inverter.interlock.locked(now);
     status.error_id = inverter.command_error.id();
-    status.error_text = inverter.command_error.text(obstacles, exchange_failed ? exchangeText(inverter) : "");
+    status.error_text =
+        inverter.command_error.text(inverter.obstacles(now), exchange_failed ? exchangeText(inverter) : "");
   }
   else if (exchange_failed)
   {
@@ -155,12 +154,13 @@ InverterStatus statusOf(const Inverter& inverter, TimePoint now)
   if (!status.communication_error)
   {
     status.monitor = inverter.refresh.monitor(now);
+    status.slow_age = inverter.refresh.reads().slowAge(now);
   }
   status.run_command = inverter.movement.runCommand();
   status.move_velocity_active = inverter.movement.active();
   status.reset_active = inverter.services.resetting();
   status.stop_active = inverter.stop.pending();
-  status.locked = inverter.interlock.locked(now);
+  status.locked = inverter.obstacles(now).locked;
   showError(inverter, now, status);
   const auto& target = inverter.movement.target();
   status.commanded_velocity = target && !target->zero ? target->velocity : 0.0;
@@ -210,9 +210,13 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   values.emplace_back("model", profile.title);
   values.emplace_back("age of status",
                       refresh.stamp() ? util::durationText(now - *refresh.stamp()) : std::string("no status yet"));
+  const std::optional<Duration> slow_age = refresh.reads().slowAge(now);
+  values.emplace_back("slow values", slow_age ? "read every " + util::durationText(refresh.reads().slowPeriod()) +
+                                                    ", the oldest is of " + util::durationText(*slow_age) + " ago"
+                                              : std::string("not read yet"));
   values.emplace_back("slowest reply", util::durationText(inverter.link.slowestReply()));
   values.emplace_back("returns", std::to_string(inverter.link.returns()));
-  values.emplace_back("locked", inverter.interlock.locked(now) ? "yes" : "no");
+  values.emplace_back("locked", inverter.obstacles(now).locked ? "yes" : "no");
   values.emplace_back("own reply delay", util::durationText(inverter.settings.replyDelay()));
   if (profile.writes == drive::Writes::Eeprom || inverter.drive.wears("frequency"))
   {

@@ -13,25 +13,34 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the line has counted and found, as a copy: others ask for it while the bus thread uses the line. Pure; not thread
-/// safe, the bus guards it.
+/// What the line has counted and found so far. Each is explained where wire::Line is asked for it.
+struct LineFacts
+{
+  wire::LineCounters counters;
+  /// A local echo is removed.
+  bool echo_found = false;
+  /// What the gateway does to numbers and units; empty: nothing.
+  std::string gateway_quirk;
+  bool telnet_found = false;
+  /// A valid reply came since the port was opened.
+  bool proven_since_open = false;
+  wire::Loss last_loss = wire::Loss::None;
+  /// What the other end of a connection has said; empty: nothing.
+  std::string peer_words;
+};
+
+/// Copies of that: others ask for it while the bus thread uses the line. Pure; not thread safe, the bus guards it.
 class LineWatch
 {
 public:
-  /// \p quirk what the gateway does to numbers and units (Line::gatewayQuirk()); empty: nothing.
-  void note(TimePoint now, const wire::LineCounters& counters, bool echo_found, const std::string& quirk);
+  void note(TimePoint now, const LineFacts& facts);
 
-  const wire::LineCounters& counters() const;
-  /// A local echo is removed.
-  bool echoFound() const;
-  const std::string& gatewayQuirk() const;
+  const LineFacts& facts() const;
   /// Somebody else polls on this line, or behind this gateway: seen within the last minute.
   std::optional<Finding> foreignFinding(TimePoint now, bool gateway) const;
 
 private:
-  wire::LineCounters counters_;
-  bool echo_found_ = false;
-  std::string gateway_quirk_;
+  LineFacts facts_;
   TimePoint foreign_at_;
 };
 }  // namespace bus

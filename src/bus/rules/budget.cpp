@@ -16,6 +16,9 @@ namespace
 // Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
 constexpr double RETURN_S = 3.0;
 constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
+constexpr double STOP_SLACK_CHARACTERS = 64.0;
+// Contract, 8.3: slow values that are read less often are worth a warning.
+constexpr double LONG_SLOW_PERIOD_S = 5.0;
 }  // namespace
 
 namespace
@@ -45,6 +48,34 @@ void addSpecialRequests(const InverterConfig& config, const drive::Drive& drive,
       requests.push_back(drive.command(config.node, step));
     }
   }
+}
+
+/// What takes from the share of the slow values, once: their reads, and the settings that are repeated while a motor runs.
+std::vector<wire::Request> slowRequests(const Configuration& configuration, std::size_t index)
+{
+  const drive::Drive& drive = configuration.drives[index];
+  const std::uint8_t station = configuration.bus.inverters[index].node;
+  std::vector<wire::Request> requests;
+  for (const drive::ReadBlock& block : drive.slowBlocks())
+  {
+    if (isSlowed(block) && configuration.bus.slow_interval > 0.0)
+    {
+      requests.push_back(drive.read(station, block));
+    }
+  }
+  for (const drive::Expectation& source : drive.profile().command_source)
+  {
+    const auto parameter = source.when_commanded ? drive.findParameter(source.parameter, false) : std::nullopt;
+    if (parameter)
+    {
+      requests.push_back(drive.readParameter(station, *parameter));
+    }
+  }
+  for (wire::Request& request : requests)
+  {
+    request.reply_delay = seconds(drive.profile().reply_delay);
+  }
+  return requests;
 }
 }  // namespace
 
@@ -99,22 +130,56 @@ Duration Budget::refreshCost(std::size_t index) const
   return cost;
 }
 
+Duration Budget::slowNeeds() const
+{
+  Duration needs{ 0 };
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    for (const wire::Request& request : slowRequests(configuration_, index))
+    {
+      needs += line_.cost(request, request.reply_delay);
+    }
+  }
+  return needs;
+}
+
+SlowShare::Settings Budget::slowSettings() const
+{
+  SlowShare::Settings settings;
+  settings.interval = seconds(configuration_.bus.slow_interval);
+  settings.gap = line_.timing().gap(MODBUS_GAP_CHARACTERS);
+  settings.cycle = cycle() + seconds(configuration_.bus.interval);
+  for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
+  {
+    for (const wire::Request& request : slowRequests(configuration_, index))
+    {
+      settings.longest = std::max(settings.longest, line_.cost(request, request.reply_delay));
+    }
+  }
+  return settings;
+}
+
+Duration Budget::slowPeriod() const
+{
+  return SlowShare(slowSettings()).period(slowNeeds());
+}
+
 Duration Budget::cycle() const
 {
   Duration fast{ 0 };
-  Duration slow{ 0 };
+  Duration guards{ 0 };
   for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
   {
     fast += refreshCost(index);
     for (const drive::ReadBlock& block : configuration_.drives[index].slowBlocks())
     {
-      slow +=
-          line_.cost(configuration_.drives[index].read(configuration_.bus.inverters[index].node, block), Duration{ 0 });
+      guards += isSlowed(block) ? Duration{ 0 } : readCost(index, block);
     }
   }
-  // Slow values come once a second each: they take this share of the time.
-  const double share = std::min(0.5, toSeconds(slow));
-  return seconds(toSeconds(fast) / (1.0 - share));
+  const double interval = configuration_.bus.slow_interval;
+  const double slow = interval > 0.0 ? std::min(SLOW_SHARE, toSeconds(slowNeeds()) / interval) : 0.0;
+  // What is never slowed comes once a second, but never takes more than a refresh's place.
+  return seconds(toSeconds(fast) / (1.0 - slow - std::min(0.5, toSeconds(guards))));
 }
 
 Duration Budget::longestExchange() const
@@ -212,6 +277,9 @@ Budget::Figures Budget::figures() const
   figures.worst_stop = worstStop();
   figures.longest_exchange = longestExchange();
   figures.deadline_margin = deadlineMargin();
+  figures.longest_pause = line_.patience();
+  figures.stop_slack = line_.timing().characters(STOP_SLACK_CHARACTERS);
+  figures.slow = slowSettings();
   figures.findings = findings();
   return figures;
 }
@@ -246,17 +314,36 @@ std::optional<Finding> Budget::returnBehindGateway() const
                       " if it does so for " + util::durationText(seconds(SHORT_BLOCK_S)) + " at most" };
 }
 
+/// Contract, 8.3: the share is small; who wants fresher values leaves others out.
+std::optional<Finding> Budget::slowFinding() const
+{
+  const Duration period = slowPeriod();
+  if (period <= std::max(seconds(LONG_SLOW_PERIOD_S), seconds(configuration_.bus.slow_interval)))
+  {
+    return std::nullopt;
+  }
+  return Finding{ Level::Warn, "slow values (voltages, torque, temperature, warnings) can be read only every " +
+                                   util::durationText(period) + " within " + util::numberText(SLOW_SHARE * 100.0) +
+                                   " % of the wire; leave out with skip what nobody needs, or raise the baud rate" };
+}
+
 std::vector<Finding> Budget::findings() const
 {
   std::vector<Finding> findings;
-  findings.push_back({ Level::Ok, "bus budget: status cycle " + util::millisecondsText(cycle()) +
-                                      ", worst stop latency " + util::millisecondsText(worstStop()) + behindGateway() +
-                                      " (plus the ramp), longest gap between two frames to "
-                                      "an inverter " +
-                                      util::millisecondsText(longestGap()) });
-  if (const auto finding = returnBehindGateway())
+  findings.push_back(
+      { Level::Ok, "bus budget: status cycle " + util::millisecondsText(cycle()) + ", worst stop latency " +
+                       util::millisecondsText(worstStop()) + behindGateway() +
+                       " (plus the ramp), longest gap between two frames to "
+                       "an inverter " +
+                       util::millisecondsText(longestGap()) + ", slow values " +
+                       (configuration_.bus.slow_interval > 0.0 ? "every " + util::durationText(slowPeriod())
+                                                               : "never (slow_interval is 0)") });
+  for (const auto& finding : { slowFinding(), returnBehindGateway() })
   {
-    findings.push_back(*finding);
+    if (finding)
+    {
+      findings.push_back(*finding);
+    }
   }
   for (std::size_t index = 0; index < configuration_.drives.size(); ++index)
   {

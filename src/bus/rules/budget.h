@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bus/rules/slow_share.h"
 #include "inverter_bus/bus/configuration.h"
 #include "inverter_bus/bus/types.h"
 
@@ -26,12 +27,18 @@ public:
     Duration worst_stop{ 0 };
     Duration longest_exchange{ 0 };
     Duration deadline_margin{ 0 };
+    /// Longest pause inside a reply that is waited out.
+    Duration longest_pause{ 0 };
+    /// How much longer than that exchange a stop may take to the wire before it is worth a trace: gaps and a short frame.
+    Duration stop_slack{ 0 };
+    SlowShare::Settings slow;
     std::vector<Finding> findings;
   };
 
   Budget(const Configuration& configuration, const wire::Line& line);
 
-  /// One status cycle of all inverters without commands, slow values included in proportion.
+  /// One status cycle of all inverters without commands, slow values included in proportion. They have their share of the
+  /// wire, and what is never slowed comes once a second.
   Duration cycle() const;
   /// Acceptance of a stop to the last bit of its frame: the longest exchange in flight, unanswered, then the frame.
   Duration worstStop() const;
@@ -43,6 +50,8 @@ public:
   Duration deadlineMargin() const;
   /// The longest exchange in use: its reply begins when its time is almost up, and has a pause in it.
   Duration longestExchange() const;
+  /// How often each slow value can be read within the share of the wire that all have (contract, 8.3), while all motors run.
+  Duration slowPeriod() const;
   Figures figures() const;
 
   /// Lines for the log: the figures, and WARN where a time-out can't be met.
@@ -59,6 +68,9 @@ public:
 private:
   Duration readCost(std::size_t index, const drive::ReadBlock& block) const;
   Duration refreshCost(std::size_t index) const;
+  Duration slowNeeds() const;
+  SlowShare::Settings slowSettings() const;
+  std::optional<Finding> slowFinding() const;
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
   std::string behindGateway() const;

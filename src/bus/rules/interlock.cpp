@@ -24,7 +24,6 @@ Interlock::Interlock(double command_timeout) : command_timeout_(seconds(command_
 void Interlock::lock()
 {
   ++generation_;
-  released_ = false;
   neutral_since_.reset();
   last_accepted_.reset();
   for (auto& stream : streams_)
@@ -77,10 +76,31 @@ void Interlock::faulted(bool faulted)
   faulted_ = faulted;
 }
 
-/// The reason for the lock is over: what remains is the publishers' return to neutral.
-bool Interlock::open() const
+/// Of which nobody can get past; Neutral: everybody must return to it, and nobody can have yet.
+LockReason Interlock::reason(const Holds& holds) const
 {
-  return neutral_since_ && !stop_pending_ && !faulted_ && !offline_;
+  if (holds.unidentified)
+  {
+    return LockReason::Unidentified;
+  }
+  if (!seen_)
+  {
+    // Silence counts from the first status, not from a stop that was confirmed before it.
+    return LockReason::Unread;
+  }
+  if (holds.resetting)
+  {
+    return LockReason::Resetting;
+  }
+  if (holds.in_setup)
+  {
+    return LockReason::InSetup;
+  }
+  if (faulted_)
+  {
+    return LockReason::Tripped;
+  }
+  return neutral_since_ ? LockReason::None : LockReason::Neutral;
 }
 
 bool Interlock::silent(TimePoint now, const Stream* stream) const
@@ -105,7 +125,7 @@ const Interlock::Stream* Interlock::find(const std::string& name) const
   return found == streams_.end() ? nullptr : &found->second;
 }
 
-Permission Interlock::judge(TimePoint now, const Publisher& publisher) const
+Interlock::Verdict Interlock::judge(TimePoint now, const Publisher& publisher, const Holds& holds) const
 {
   const Stream* stream = find(publisher.name);
   const bool old_message = publisher.latched && publisher.first_on_connection;
@@ -114,26 +134,27 @@ Permission Interlock::judge(TimePoint now, const Publisher& publisher) const
       stream == nullptr ? forgotten_last_ != TimePoint() : stream->topics.count(publisher.topic) != 0;
   if (old_message && heard_before)
   {
-    return Permission::Repeat;
+    return { Permission::Repeat, LockReason::None };
   }
   if (offline_)
   {
-    return Permission::Offline;
+    return { Permission::Offline, LockReason::None };
   }
-  if (stop_pending_)
+  if (stop_pending_ || holds.stop)
   {
-    return Permission::StopPending;
+    return { Permission::StopPending, LockReason::None };
   }
-  if (old_message && publisher.before_start)
+  const LockReason barred = reason(holds);
+  if (barred != LockReason::None)
   {
-    return Permission::Locked;
-  }
-  if (!open())
-  {
-    return Permission::Locked;
+    return { Permission::Locked, barred };
   }
   const bool admitted = stream != nullptr && (stream->admitted == generation_ || stream->neutral);
-  return admitted || silent(now, stream) ? Permission::Granted : Permission::Locked;
+  if ((old_message && publisher.before_start) || !(admitted || silent(now, stream)))
+  {
+    return { Permission::Locked, LockReason::Neutral };
+  }
+  return { Permission::Granted, LockReason::None };
 }
 
 /// Whoever has sent anything is known from then on: what it repeats on its next connection is old.
@@ -169,7 +190,7 @@ Interlock::Stream& Interlock::book(TimePoint now, const Publisher& publisher)
   return stream;
 }
 
-void Interlock::commanded(TimePoint now, const Publisher& publisher, bool accepted)
+void Interlock::commanded(TimePoint now, const Publisher& publisher, bool accepted, const Holds& holds)
 {
   Stream& stream = book(now, publisher);
   stream.nonzero = true;
@@ -177,8 +198,11 @@ void Interlock::commanded(TimePoint now, const Publisher& publisher, bool accept
   if (accepted)
   {
     stream.admitted = generation_;
-    released_ = true;
     last_accepted_ = now;
+  }
+  else if (reason(holds) != LockReason::None)
+  {
+    stream.admitted = 0;
   }
 }
 
@@ -219,19 +243,16 @@ bool Interlock::watchdogDue(TimePoint now) const
   return due && now >= *due;
 }
 
-bool Interlock::locked(TimePoint now) const
+bool Interlock::locked(TimePoint now, const Holds& holds) const
 {
-  if (!open())
+  if (offline_ || stop_pending_ || reason(holds) != LockReason::None)
   {
     return true;
   }
-  if (released_)
-  {
-    return false;
-  }
-  const bool somebody_neutral =
-      std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) { return stream.second.neutral; });
-  if (somebody_neutral)
+  const bool somebody_is_free = std::any_of(streams_.begin(), streams_.end(), [this](const auto& stream) {
+    return stream.second.neutral || stream.second.admitted == generation_;
+  });
+  if (somebody_is_free)
   {
     return false;
   }

@@ -27,6 +27,35 @@ enum class Permission
   Locked
 };
 
+/// Why it is Locked. All reasons are here, so that `locked` in a status and the refusal 0xB005 can't differ.
+enum class LockReason
+{
+  /// It is not.
+  None,
+  /// The drive has not told yet, or not again, what it is.
+  Unidentified,
+  /// No complete status has come since the start.
+  Unread,
+  /// A reset of the drive is under way.
+  Resetting,
+  /// A parameter is being written in the drive's setup area.
+  InSetup,
+  Tripped,
+  /// The publisher has not returned to neutral.
+  Neutral
+};
+
+/// What bars velocities for as long as it lasts. Other parts of the inverter know of it, so that it is handed in with each
+/// question.
+struct Holds
+{
+  /// A stop is pending whose place no velocity takes, though it locks nobody: 0xB002.
+  bool stop = false;
+  bool unidentified = false;
+  bool resetting = false;
+  bool in_setup = false;
+};
+
 /// Return to neutral and command watchdog of one inverter (contract, sections 4.2 and 4.3), as one pure state machine: time comes
 /// in, permissions come out.
 ///
@@ -36,8 +65,9 @@ enum class Permission
 ///     fault -------+       +---------------------------------------------------------------------------------------+
 ///     offline -----+
 ///
-/// A lock counts per publisher: whoever has not returned to neutral since stays refused, whatever others do. Not thread
-/// safe; the bus guards it.
+/// A lock counts per publisher: whoever has not returned to neutral since stays refused, whatever others do. A hold locks
+/// while it lasts; after it, only those whose velocities it has refused must return to neutral: nothing has stopped, but a
+/// stream must not start a motor at a moment that nobody can foresee. Not thread safe; the bus guards it.
 class Interlock
 {
 public:
@@ -54,11 +84,17 @@ public:
   void faulted(bool faulted);
 
   // --- velocities -------------------------------------------------------------------------------------------------
-  /// Judges a velocity other than 0 and changes nothing.
-  Permission judge(TimePoint now, const Publisher& publisher) const;
+  struct Verdict
+  {
+    Permission permission = Permission::Granted;
+    /// If it is Locked.
+    LockReason reason = LockReason::None;
+  };
+  /// Judges a velocity other than 0 and changes nothing. What counts more comes first (contract, section 2: the order of ids).
+  Verdict judge(TimePoint now, const Publisher& publisher, const Holds& holds) const;
   /// Books a velocity other than 0. \p accepted: it was granted and is in range; feeds the command watchdog. A refused one ends
   /// the publisher's neutral: a stream of refused commands must not come through when the lock's reason goes away.
-  void commanded(TimePoint now, const Publisher& publisher, bool accepted);
+  void commanded(TimePoint now, const Publisher& publisher, bool accepted, const Holds& holds);
   /// Books a velocity of 0: neutral for this publisher.
   void zeroed(TimePoint now, const Publisher& publisher);
   /// Books a velocity near 0: for the lock as if nothing had come, so that it neither ends a silence nor is a return to
@@ -74,7 +110,7 @@ public:
   std::optional<TimePoint> watchdogAt() const;
   /// What status shows: true while nobody has returned to neutral and a stream goes on being refused, or the lock's reason
   /// is not over. False, a publisher whose stream has never paused is still refused: the lock counts per publisher.
-  bool locked(TimePoint now) const;
+  bool locked(TimePoint now, const Holds& holds) const;
   /// Silence that unlocks for somebody who was never heard; whoever sends slowly needs twice his spacing.
   Duration silenceNeeded() const;
   bool stopPending() const;
@@ -97,7 +133,7 @@ private:
     bool nonzero = false;
     std::set<std::string> topics;
   };
-  bool open() const;
+  LockReason reason(const Holds& holds) const;
   bool silent(TimePoint now, const Stream* stream) const;
   const Stream* find(const std::string& name) const;
   Stream& hear(TimePoint now, const Publisher& publisher);
@@ -109,7 +145,6 @@ private:
   /// The last message of any publisher that is not in streams_ any more.
   TimePoint forgotten_last_;
   unsigned generation_ = 1;
-  bool released_ = false;
   bool stop_pending_ = false;
   bool faulted_ = false;
   bool offline_ = false;

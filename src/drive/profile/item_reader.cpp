@@ -8,7 +8,7 @@
 #include <regex>
 #include <string>
 
-#include "drive/profile/numbers.h"
+#include "config/numerals.h"
 #include "util/printable.h"
 #include "util/text.h"
 
@@ -20,13 +20,13 @@ namespace
 {
 constexpr std::int64_t MAX_NUMBER = 0xFFFF;
 
-bool isUnknown(const YamlCursor& cursor)
+bool isUnknown(const Cursor& cursor)
 {
-  return cursor.value().kind == YamlValue::Kind::Scalar && cursor.value().text == UNKNOWN;
+  return cursor.value().isScalar() && cursor.value().text == UNKNOWN;
 }
 
-/// A place or value that nobody knows must carry a name, or it would look like one that may be used.
-void noteMissing(const YamlMap& map, Item& item)
+/// An unknown place or value must have a name, or it would look like one that may be used.
+void noteMissing(const Section& map, Item& item)
 {
   item.missing = true;
   if (item.unconfirmed.empty())
@@ -35,17 +35,17 @@ void noteMissing(const YamlMap& map, Item& item)
   }
 }
 
-const Constant* findConstant(const YamlCursor& cursor, const Numbering& numbering)
+const Constant* findConstant(const Cursor& cursor, const Numbering& numbering)
 {
   const auto found = numbering.constants.find(cursor.value().text);
-  if (cursor.value().kind == YamlValue::Kind::Scalar && found != numbering.constants.end())
+  if (cursor.value().isScalar() && found != numbering.constants.end())
   {
     return &found->second;
   }
   return nullptr;
 }
 
-/// What hangs on a constant is as unconfirmed as the constant.
+/// An item that depends on a constant is as unconfirmed as the constant.
 void inheritMark(const Constant& constant, Item& item)
 {
   if (!constant.unconfirmed.empty())
@@ -57,7 +57,7 @@ void inheritMark(const Constant& constant, Item& item)
 }
 
 /// The number that `register` counts from; 0 without `base`.
-std::int64_t readBase(YamlMap& map, const Numbering& numbering, Item& item)
+std::int64_t readBase(Section& map, const Numbering& numbering, Item& item)
 {
   const auto cursor = map.find("base");
   if (!cursor)
@@ -74,14 +74,14 @@ std::int64_t readBase(YamlMap& map, const Numbering& numbering, Item& item)
   const double base = constant->value.value_or(0.0);
   if (base != std::floor(base) || base < 0.0 || base > static_cast<double>(MAX_NUMBER))
   {
-    cursor->problems().add(constant->place, constant->key,
-                           "value " + util::exactText(base) + ": allowed: an integer from 0 to 65535");
+    cursor->complaints().complain({ constant->place, constant->key },
+                                  "value " + util::exactText(base) + ": allowed: an integer from 0 to 65535");
     return 0;
   }
   return static_cast<std::int64_t>(base);
 }
 
-void checkDigits(const YamlCursor& cursor, const Numbering& numbering, std::int64_t number)
+void checkDigits(const Cursor& cursor, const Numbering& numbering, std::int64_t number)
 {
   if (numbering.decimal && ((number & 0xF) > 9 || ((number >> 4) & 0xF) > 9))
   {
@@ -90,7 +90,7 @@ void checkDigits(const YamlCursor& cursor, const Numbering& numbering, std::int6
   }
 }
 
-void readAddress(YamlMap& map, const YamlCursor& cursor, const Numbering& numbering, Item& item, bool& good)
+void readAddress(Section& map, const Cursor& cursor, const Numbering& numbering, Item& item, bool& good)
 {
   const bool based = map.has("base");
   const std::int64_t base = readBase(map, numbering, item);
@@ -115,7 +115,7 @@ void readAddress(YamlMap& map, const YamlCursor& cursor, const Numbering& number
 }
 
 /// "C1/0000": variable type and address as the manual writes them.
-void readVariable(const YamlMap& map, const YamlCursor& cursor, Item& item, bool& good)
+void readVariable(const Section& map, const Cursor& cursor, Item& item, bool& good)
 {
   item.space = Space::Variable;
   if (isUnknown(cursor))
@@ -128,7 +128,7 @@ void readVariable(const YamlMap& map, const YamlCursor& cursor, Item& item, bool
   const std::string text = cursor.text().value_or("");
   if (!std::regex_match(text, match, FORM))
   {
-    cursor.reject("variable type and address in upper-case hexadecimal digits, as C1/0000");
+    cursor.reject("variable type and address in upper-case hexadecimal digits, such as C1/0000");
     good = false;
     return;
   }
@@ -137,7 +137,7 @@ void readVariable(const YamlMap& map, const YamlCursor& cursor, Item& item, bool
   item.address = item.number;
 }
 
-void checkEnd(const YamlMap& map, const Numbering& numbering, const Item& item)
+void checkEnd(const Section& map, const Numbering& numbering, const Item& item)
 {
   const std::int64_t last = static_cast<std::int64_t>(item.number) + item.size - 1;
   if (!item.missing && last > numbering.highest(item.space))
@@ -147,11 +147,11 @@ void checkEnd(const YamlMap& map, const Numbering& numbering, const Item& item)
   }
 }
 
-void readValues(const YamlCursor& cursor, Item& item)
+void readValues(const Cursor& cursor, Item& item)
 {
   for (const auto& [key, meaning] : cursor.entries())
   {
-    const auto raw = parseInteger(key);
+    const auto raw = config::parseInteger(key);
     const auto value = meaning.integer(-1, 1);
     const std::int64_t highest = largestRaw(item);
     if (!raw || *raw < 0 || *raw > highest)
@@ -166,7 +166,7 @@ void readValues(const YamlCursor& cursor, Item& item)
   }
 }
 
-void readResolution(const YamlCursor& cursor, const Numbering& numbering, Item& item)
+void readResolution(const Cursor& cursor, const Numbering& numbering, Item& item)
 {
   const Constant* constant = findConstant(cursor, numbering);
   if (constant == nullptr)
@@ -178,13 +178,13 @@ void readResolution(const YamlCursor& cursor, const Numbering& numbering, Item& 
   item.resolution = constant->value.value_or(1.0);
   if (!(item.resolution > 0.0))
   {
-    cursor.problems().add(constant->place, constant->key,
-                          "value " + util::exactText(item.resolution) + ": allowed: a number above 0");
+    cursor.complaints().complain({ constant->place, constant->key },
+                                 "value " + util::exactText(item.resolution) + ": allowed: a number above 0");
     item.resolution = 1.0;
   }
 }
 
-void readScale(YamlMap& map, const Numbering& numbering, const ItemRules& rules, Item& item)
+void readScale(Section& map, const Numbering& numbering, const ItemRules& rules, Item& item)
 {
   if (const auto cursor = map.find("resolution"))
   {
@@ -205,7 +205,7 @@ void readScale(YamlMap& map, const Numbering& numbering, const ItemRules& rules,
   }
 }
 
-void readBits(YamlMap& map, const ItemRules& rules, Item& item)
+void readBits(Section& map, const ItemRules& rules, Item& item)
 {
   const bool has_bit = rules.bit && map.has("bit");
   if (rules.bit)
@@ -240,7 +240,7 @@ void readBits(YamlMap& map, const ItemRules& rules, Item& item)
   }
 }
 
-void readRegister(YamlMap& map, const Numbering& numbering, const ItemRules& rules, Item& item)
+void readRegister(Section& map, const Numbering& numbering, const ItemRules& rules, Item& item)
 {
   if (item.space == Space::Register)
   {
@@ -253,7 +253,7 @@ void readRegister(YamlMap& map, const Numbering& numbering, const ItemRules& rul
   readBits(map, rules, item);
 }
 
-void readCoil(YamlMap& map, const ItemRules& rules, Item& item)
+void readCoil(Section& map, const ItemRules& rules, Item& item)
 {
   if (rules.packed_coils)
   {
@@ -261,7 +261,7 @@ void readCoil(YamlMap& map, const ItemRules& rules, Item& item)
   }
 }
 
-void checkValues(const YamlMap& map, const Item& item)
+void checkValues(const Section& map, const Item& item)
 {
   if (!item.values.empty() && (item.is_signed || map.has("resolution")))
   {
@@ -295,14 +295,14 @@ std::vector<std::string> placeKeys(const Numbering& numbering, const ItemRules& 
   {
     return rules.coil ? std::vector<std::string>{ "coil", "register" } : std::vector<std::string>{ "register" };
   }
-  // What is written may be an operation code; the controller's status is only read.
+  // An operation code may be written; the controller's status is only read.
   return rules.written                               ? std::vector<std::string>{ "variable", "operation" }
          : rules.coil || rules.values || rules.scale ? std::vector<std::string>{ "variable", "controller_status" }
                                                      : std::vector<std::string>{ "variable" };
 }
 
 /// The one key that says where the item lies; none after a complaint.
-std::string readPlaceKey(YamlMap& map, const std::vector<std::string>& keys)
+std::string readPlaceKey(Section& map, const std::vector<std::string>& keys)
 {
   std::string found;
   std::size_t count = 0;
@@ -323,9 +323,9 @@ std::string readPlaceKey(YamlMap& map, const std::vector<std::string>& keys)
   return "";
 }
 
-void readPlace(YamlMap& map, const std::string& key, const Numbering& numbering, Item& item, bool& good)
+void readPlace(Section& map, const std::string& key, const Numbering& numbering, Item& item, bool& good)
 {
-  const YamlCursor cursor = *map.find(key);
+  const Cursor cursor = *map.find(key);
   if (key == "variable")
   {
     readVariable(map, cursor, item, good);
@@ -346,7 +346,7 @@ void readPlace(YamlMap& map, const std::string& key, const Numbering& numbering,
 }
 }  // namespace
 
-std::optional<Item> readItem(YamlMap& map, const Numbering& numbering, const ItemRules& rules)
+std::optional<Item> readItem(Section& map, const Numbering& numbering, const ItemRules& rules)
 {
   Item item;
   item.unconfirmed = map.name("unconfirmed");
@@ -383,12 +383,12 @@ std::optional<Item> readItem(YamlMap& map, const Numbering& numbering, const Ite
   return item;
 }
 
-std::vector<std::pair<unsigned, unsigned>> readSpans(const YamlCursor& cursor, const Numbering& numbering, Space space)
+std::vector<std::pair<unsigned, unsigned>> readSpans(const Cursor& cursor, const Numbering& numbering, Space space)
 {
   std::vector<std::pair<unsigned, unsigned>> spans;
-  for (const YamlCursor& pair : cursor.list())
+  for (const Cursor& pair : cursor.list())
   {
-    const std::vector<YamlCursor> ends = pair.list();
+    const std::vector<Cursor> ends = pair.list();
     if (ends.size() != 2)
     {
       pair.reject("two numbers, first and last");

@@ -10,13 +10,18 @@
 #include <utility>
 #include <vector>
 
-#include "drive/profile/yaml_reader.h"
+#include "config/cursor.h"
 #include "inverter_bus/drive/profile.h"
 
 namespace inverter_bus
 {
 namespace drive
 {
+using config::Cursor;
+using config::Entry;
+using config::Section;
+using config::Value;
+
 /// How the drive counts: difference between the wire address and the number printed in the manual, and the numbers that
 /// have names.
 struct Numbering
@@ -35,7 +40,7 @@ struct Numbering
   std::int64_t highest(Space space) const;
 };
 
-/// Which kinds of item may stand at a place.
+/// Which kinds of item are allowed at a place.
 struct ItemRules
 {
   bool coil = true;
@@ -53,15 +58,15 @@ struct ItemRules
   bool written = false;
 };
 
-/// What stands where a value is not known to anybody.
+/// Takes the place of an unknown value.
 constexpr const char* UNKNOWN = "unknown";
 
 /// Reads the keys of an item: register or coil and what belongs to it, `unconfirmed` and `source`. Other keys of the
-/// map are left to the caller, who calls YamlMap::finish(). Empty after a mistake in the address.
-std::optional<Item> readItem(YamlMap& map, const Numbering& numbering, const ItemRules& rules);
+/// map are left to the caller, who calls Section::finish(). Empty after a mistake in the address.
+std::optional<Item> readItem(Section& map, const Numbering& numbering, const ItemRules& rules);
 
 /// [[first, last], ...] of printed numbers, in ascending order and apart from each other.
-std::vector<std::pair<unsigned, unsigned>> readSpans(const YamlCursor& cursor, const Numbering& numbering, Space space);
+std::vector<std::pair<unsigned, unsigned>> readSpans(const Cursor& cursor, const Numbering& numbering, Space space);
 
 /// The largest raw value that an item can hold, sign apart.
 std::uint32_t largestRaw(const Item& item);

@@ -2,8 +2,6 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "drive/profile/problems.h"
 
-#include <cstddef>
-
 #include "inverter_bus/drive/profile.h"
 #include "util/printable.h"
 
@@ -13,13 +11,8 @@ namespace drive
 {
 namespace
 {
-/// Whoever has more mistakes than these mends the first ones first.
+/// With more mistakes than these, the first ones are corrected first.
 constexpr std::size_t MOST_LINES = 50;
-
-std::string lineOf(const std::string& where, const std::string& key, const std::string& what)
-{
-  return oneLine(where + ": " + (key.empty() ? "" : "key '" + util::printable(key) + "': ") + what);
-}
 }  // namespace
 
 std::string oneLine(const std::string& text)
@@ -28,27 +21,14 @@ std::string oneLine(const std::string& text)
   return util::printable(text, LONGEST);
 }
 
-void Problems::add(const std::string& where, const std::string& key, const std::string& what)
+void Problems::complain(const config::Spot& spot, const std::string& what)
 {
   if (lines_.size() >= MOST_LINES)
   {
     ++more_;
     return;
   }
-  lines_.push_back(lineOf(where, key, what));
-}
-
-void Problems::addHarmless(const std::string& where, const std::string& key, const std::string& what)
-{
-  if (harmless_.size() < MOST_LINES)
-  {
-    harmless_.push_back(lineOf(where, key, what));
-  }
-}
-
-const std::vector<std::string>& Problems::harmless() const
-{
-  return harmless_;
+  lines_.push_back(config::lineOf(spot, what));
 }
 
 bool Problems::empty() const

@@ -7,27 +7,23 @@
 #include <string>
 #include <vector>
 
+#include "config/complaints.h"
+
 namespace inverter_bus
 {
 namespace drive
 {
 /// Mistakes found while reading. Reading goes on after one, so that `check_profile` shows them all.
-class Problems
+class Problems : public config::Complaints
 {
 public:
-  /// \p where "file:line" or the scan list entry, \p key the way to the value ("points.run.coil"), may be empty.
-  void add(const std::string& where, const std::string& key, const std::string& what);
-  /// A mistake for which only the value in question is left out.
-  void addHarmless(const std::string& where, const std::string& key, const std::string& what);
-  /// Nothing but harmless mistakes.
+  void complain(const config::Spot& spot, const std::string& what) override;
   bool empty() const;
   /// The first mistakes, and at the end how many more there were.
   std::vector<std::string> lines() const;
-  const std::vector<std::string>& harmless() const;
 
 private:
   std::vector<std::string> lines_;
-  std::vector<std::string> harmless_;
   std::size_t more_ = 0;
 };
 }  // namespace drive

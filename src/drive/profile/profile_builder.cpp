@@ -14,7 +14,7 @@ namespace drive
 {
 namespace
 {
-/// A parameter that nobody has confirmed isn't read: what hangs on it then goes by the assumed values.
+/// An unconfirmed parameter isn't read: what depends on it then uses the assumed values.
 void dropIfUnconfirmed(std::string& name, const Profile& profile)
 {
   const auto parameter = profile.parameters.find(name);
@@ -38,10 +38,10 @@ void settleUnconfirmed(Profile& profile)
 }
 }  // namespace
 
-Profile buildProfile(const YamlValue& root, Problems& problems)
+Profile buildProfile(const Value& root, Problems& problems)
 {
   Profile profile;
-  YamlMap map(YamlCursor(root, "", problems));
+  Section map(Cursor(root, "", problems));
   Numbering numbering = readNumbering(map);
   profile.first_register = static_cast<unsigned>(numbering.lowest(Space::Register));
   profile.decimal_numbers = numbering.decimal;
@@ -72,14 +72,19 @@ Profile buildProfile(const YamlValue& root, Problems& problems)
   return profile;
 }
 
-bool leftOutForUnit(const std::string& field, const Item& item, const YamlCursor& cursor)
+bool leftOutForUnit(const std::string& field, const Item& item, const Cursor& cursor, Profile& profile)
 {
   const std::string mistake = unitMistake(field, item);
   if (mistake.empty())
   {
     return false;
   }
-  cursor.problems().addHarmless(cursor.value().where, cursor.path(), mistake + "; until then it is not shown");
+  // With more of them than these, the first ones are corrected first.
+  constexpr std::size_t MOST_MISTAKES = 50;
+  if (profile.mistakes.size() < MOST_MISTAKES)
+  {
+    profile.mistakes.push_back(config::lineOf(cursor.spot(), mistake + "; it is not shown until this is corrected"));
+  }
   return true;
 }
 
@@ -93,14 +98,14 @@ unsigned Profile::position(std::uint16_t number) const
   return (number >> 8U) * 100U + ((number >> 4U) & 0xFU) * 10U + (number & 0xFU);
 }
 
-YamlCursor locate(const YamlValue& root, const std::string& path, Problems& problems)
+Cursor locate(const Value& root, const std::string& path, config::Complaints& complaints)
 {
-  const YamlValue* value = &root;
+  const Value* value = &root;
   std::size_t start = 0;
   while (start <= path.size())
   {
     const std::size_t dot = std::min(path.find('.', start), path.size());
-    const YamlValue* next = value->find(path.substr(start, dot - start));
+    const Value* next = value->find(path.substr(start, dot - start));
     if (next == nullptr)
     {
       break;
@@ -108,7 +113,7 @@ YamlCursor locate(const YamlValue& root, const std::string& path, Problems& prob
     value = next;
     start = dot + 1;
   }
-  return YamlCursor(*value, path, problems);
+  return Cursor(*value, path, complaints);
 }
 }  // namespace drive
 }  // namespace inverter_bus

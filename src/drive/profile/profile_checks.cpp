@@ -21,7 +21,7 @@ namespace drive
 {
 namespace
 {
-void checkSteps(const std::string& name, const Sequence& sequence, const Profile& profile, const YamlCursor& place)
+void checkSteps(const std::string& name, const Sequence& sequence, const Profile& profile, const Cursor& place)
 {
   for (const Step& step : sequence.steps)
   {
@@ -44,11 +44,11 @@ void checkSteps(const std::string& name, const Sequence& sequence, const Profile
   const bool moves = name == "forward" || name == "reverse";
   if (moves && profile.sequences.count("stop") == 0)
   {
-    place.complain("can set a motor running, but the sequence stop is missing: must be given");
+    place.complain("can start a motor, but the sequence stop is missing: must be given");
   }
 }
 
-void checkSetpoint(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkSetpoint(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   const auto point = profile.points.find("frequency");
   if (point == profile.points.end())
@@ -59,25 +59,25 @@ void checkSetpoint(const YamlValue& root, const Profile& profile, Problems& prob
   const double counts = toCounts(profile.maximum_frequency, item.resolution);
   if (item.space == Space::Coil || item.space == Space::Operation || counts > largestRaw(item) || counts < 1.0)
   {
-    locate(root, "points.frequency", problems)
+    locate(root, "points.frequency", complaints)
         .complain("frequency.maximum " + util::exactText(profile.maximum_frequency) + " Hz is " +
                   util::exactText(counts) + " counts: must fit into the register");
   }
 }
 
-void checkParameterName(const YamlValue& root, const std::string& key, const std::string& name, const Profile& profile,
-                        Problems& problems)
+void checkParameterName(const Value& root, const std::string& key, const std::string& name, const Profile& profile,
+                        config::Complaints& complaints)
 {
   if (!name.empty() && profile.parameters.count(name) == 0)
   {
-    locate(root, key, problems)
+    locate(root, key, complaints)
         .complain("value '" + util::printable(name) + "': allowed: a name of the section parameters");
   }
 }
 
 /// Times are compared with seconds, so their parameters must come in a unit that can be.
-void checkUnit(const YamlValue& root, const std::string& key, const std::string& name,
-               const std::vector<std::string>& units, const Profile& profile, Problems& problems)
+void checkUnit(const Value& root, const std::string& key, const std::string& name,
+               const std::vector<std::string>& units, const Profile& profile, config::Complaints& complaints)
 {
   const auto parameter = profile.parameters.find(name);
   if (parameter == profile.parameters.end())
@@ -87,30 +87,30 @@ void checkUnit(const YamlValue& root, const std::string& key, const std::string&
   const std::string& unit = parameter->second.item.unit;
   if (std::find(units.begin(), units.end(), unit) == units.end())
   {
-    const YamlCursor place = locate(root, key, problems);
+    const Cursor place = locate(root, key, complaints);
     place.complain("value '" + util::printable(name) + "': a parameter with the unit '" + unit +
                    "': allowed: " + util::joined(units));
   }
 }
 
-void checkExpectations(const YamlValue& root, const std::string& key, const std::vector<Expectation>& expectations,
-                       const Profile& profile, Problems& problems)
+void checkExpectations(const Value& root, const std::string& key, const std::vector<Expectation>& expectations,
+                       const Profile& profile, config::Complaints& complaints)
 {
   for (const Expectation& expectation : expectations)
   {
-    checkParameterName(root, key, expectation.parameter, profile, problems);
+    checkParameterName(root, key, expectation.parameter, profile, complaints);
   }
 }
 
 /// A parameter that needs the setup area needs commands that lead into it and out of it again.
-void checkSetupParameters(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkSetupParameters(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   for (const auto& [name, parameter] : profile.parameters)
   {
     const bool both = profile.sequences.count("open_setup") != 0 && profile.sequences.count("close_setup") != 0;
     if (parameter.setup && !both)
     {
-      locate(root, "parameters." + name, problems)
+      locate(root, "parameters." + name, complaints)
           .complain("setup needs the sequences open_setup and close_setup: must be given");
     }
   }
@@ -120,8 +120,8 @@ void checkSetupParameters(const YamlValue& root, const Profile& profile, Problem
 class Abilities
 {
 public:
-  Abilities(const YamlValue& root, const Profile& profile, Problems& problems)
-    : root_(root), profile_(profile), problems_(problems)
+  Abilities(const Value& root, const Profile& profile, config::Complaints& complaints)
+    : root_(root), profile_(profile), complaints_(complaints)
   {
   }
 
@@ -169,9 +169,9 @@ public:
   }
 
 private:
-  YamlCursor at(const std::string& key) const
+  Cursor at(const std::string& key) const
   {
-    return locate(root_, key, problems_);
+    return locate(root_, key, complaints_);
   }
 
   void need(const std::string& key, const std::vector<unsigned>& any_of) const
@@ -187,9 +187,9 @@ private:
     }
   }
 
-  const YamlValue& root_;
+  const Value& root_;
   const Profile& profile_;
-  Problems& problems_;
+  config::Complaints& complaints_;
 };
 
 bool overlap(const Item& a, const Item& b)
@@ -212,7 +212,7 @@ bool inCommandArea(const Item& item, const Profile& profile)
                      [&item](const auto& point) { return overlap(point.second.item, item); });
 }
 
-void checkPointOverlaps(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkPointOverlaps(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   for (auto a = profile.points.begin(); a != profile.points.end(); ++a)
   {
@@ -220,14 +220,14 @@ void checkPointOverlaps(const YamlValue& root, const Profile& profile, Problems&
     {
       if (overlap(a->second.item, b->second.item))
       {
-        locate(root, "points." + b->first, problems)
+        locate(root, "points." + b->first, complaints)
             .complain("lies on the point '" + a->first + "': allowed: a place of its own");
       }
     }
   }
 }
 
-void checkParameterOverlaps(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkParameterOverlaps(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   std::vector<const Parameter*> sorted;
   for (const auto& entry : profile.parameters)
@@ -235,7 +235,7 @@ void checkParameterOverlaps(const YamlValue& root, const Profile& profile, Probl
     sorted.push_back(&entry.second);
     if (!entry.second.read_only && inCommandArea(entry.second.item, profile))
     {
-      locate(root, "parameters." + entry.first, problems)
+      locate(root, "parameters." + entry.first, complaints)
           .complain("lies on a command register, which is never writable as a parameter: needs read_only: true");
     }
   }
@@ -246,7 +246,7 @@ void checkParameterOverlaps(const YamlValue& root, const Profile& profile, Probl
   {
     if (overlap(sorted[i - 1]->item, sorted[i]->item))
     {
-      locate(root, "parameters." + sorted[i]->name, problems)
+      locate(root, "parameters." + sorted[i]->name, complaints)
           .complain("register " + util::hexNumber(sorted[i]->item.number) + " belongs to '" + sorted[i - 1]->name +
                     "' (" + util::hexNumber(sorted[i - 1]->item.number) + ", " +
                     std::to_string(sorted[i - 1]->item.size) + " words): allowed: a place of its own");
@@ -255,7 +255,7 @@ void checkParameterOverlaps(const YamlValue& root, const Profile& profile, Probl
 }
 
 /// Two flags on one bit are nearly always a slip of the pen; `shared: true` says that it is meant.
-void checkFlagOverlaps(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkFlagOverlaps(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   const auto is_flag = [](const std::string& field) { return flagFields().count(field) != 0; };
   for (auto a = profile.status.begin(); a != profile.status.end(); ++a)
@@ -264,9 +264,9 @@ void checkFlagOverlaps(const YamlValue& root, const Profile& profile, Problems& 
     {
       const bool same_bit = overlap(a->second, b->second) && a->second.bit == b->second.bit &&
                             a->second.values == b->second.values && a->second.mask == b->second.mask;
-      const YamlCursor place = locate(root, "status." + b->first, problems);
+      const Cursor place = locate(root, "status." + b->first, complaints);
       if (is_flag(a->first) && is_flag(b->first) && same_bit && place.value().find("shared") == nullptr &&
-          locate(root, "status." + a->first, problems).value().find("shared") == nullptr)
+          locate(root, "status." + a->first, complaints).value().find("shared") == nullptr)
       {
         place.complain("is the same bit as '" + a->first + "': allowed: a bit of its own, or shared: true");
       }
@@ -275,32 +275,32 @@ void checkFlagOverlaps(const YamlValue& root, const Profile& profile, Problems& 
 }
 }  // namespace
 
-void checkReferences(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkReferences(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   for (const auto& [name, sequence] : profile.sequences)
   {
-    checkSteps(name, sequence, profile, locate(root, "sequences." + name, problems));
+    checkSteps(name, sequence, profile, locate(root, "sequences." + name, complaints));
   }
-  checkSetpoint(root, profile, problems);
-  checkExpectations(root, "identity", profile.identity, profile, problems);
-  checkExpectations(root, "command_source", profile.command_source, profile, problems);
-  checkExpectations(root, "self_restart", profile.self_restart, profile, problems);
-  checkParameterName(root, "ratings.current", profile.rated_current_parameter, profile, problems);
-  checkParameterName(root, "ratings.voltage", profile.rated_voltage_parameter, profile, problems);
-  checkUnit(root, "ratings.current", profile.rated_current_parameter, { "A" }, profile, problems);
-  checkUnit(root, "ratings.voltage", profile.rated_voltage_parameter, { "V" }, profile, problems);
-  checkSetupParameters(root, profile, problems);
+  checkSetpoint(root, profile, complaints);
+  checkExpectations(root, "identity", profile.identity, profile, complaints);
+  checkExpectations(root, "command_source", profile.command_source, profile, complaints);
+  checkExpectations(root, "self_restart", profile.self_restart, profile, complaints);
+  checkParameterName(root, "ratings.current", profile.rated_current_parameter, profile, complaints);
+  checkParameterName(root, "ratings.voltage", profile.rated_voltage_parameter, profile, complaints);
+  checkUnit(root, "ratings.current", profile.rated_current_parameter, { "A" }, profile, complaints);
+  checkUnit(root, "ratings.voltage", profile.rated_voltage_parameter, { "V" }, profile, complaints);
+  checkSetupParameters(root, profile, complaints);
   const CommunicationLoss& loss = profile.communication_loss;
-  checkParameterName(root, "communication_loss.timeout_parameter", loss.timeout_parameter, profile, problems);
-  checkParameterName(root, "communication_loss.action_parameter", loss.action_parameter, profile, problems);
-  checkParameterName(root, "timing.reply_delay_parameter", profile.reply_delay_parameter, profile, problems);
-  checkUnit(root, "communication_loss.timeout_parameter", loss.timeout_parameter, { "s" }, profile, problems);
-  checkUnit(root, "timing.reply_delay_parameter", profile.reply_delay_parameter, { "s", "ms" }, profile, problems);
+  checkParameterName(root, "communication_loss.timeout_parameter", loss.timeout_parameter, profile, complaints);
+  checkParameterName(root, "communication_loss.action_parameter", loss.action_parameter, profile, complaints);
+  checkParameterName(root, "timing.reply_delay_parameter", profile.reply_delay_parameter, profile, complaints);
+  checkUnit(root, "communication_loss.timeout_parameter", loss.timeout_parameter, { "s" }, profile, complaints);
+  checkUnit(root, "timing.reply_delay_parameter", profile.reply_delay_parameter, { "s", "ms" }, profile, complaints);
 }
 
-void checkAbilities(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkAbilities(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
-  const Abilities abilities(root, profile, problems);
+  const Abilities abilities(root, profile, complaints);
   for (const auto& [name, point] : profile.points)
   {
     abilities.needWrite("points." + name, point.item);
@@ -338,13 +338,13 @@ void checkAbilities(const YamlValue& root, const Profile& profile, Problems& pro
   }
   else if (!asks)
   {
-    locate(root, "status", problems)
+    locate(root, "status", complaints)
         .complain(
             "has no confirmed field that is read in every refresh: needs one (that is not left out), or keep_alive");
   }
 }
 
-void checkBlock(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkBlock(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   if (!profile.block)
   {
@@ -353,18 +353,18 @@ void checkBlock(const YamlValue& root, const Profile& profile, Problems& problem
   const Block& block = *profile.block;
   for (const std::string& name : block.read_slots)
   {
-    checkParameterName(root, "block.read.slots", name, profile, problems);
+    checkParameterName(root, "block.read.slots", name, profile, complaints);
   }
   for (const std::string& name : block.write_slots)
   {
-    checkParameterName(root, "block.write.slots", name, profile, problems);
+    checkParameterName(root, "block.write.slots", name, profile, complaints);
   }
-  checkParameterName(root, "block.apply.parameter", block.apply_parameter, profile, problems);
+  checkParameterName(root, "block.apply.parameter", block.apply_parameter, profile, complaints);
   for (const auto& entry : block.select)
   {
     if (profile.points.count(entry.first) == 0)
     {
-      locate(root, "block.write.select", problems)
+      locate(root, "block.write.select", complaints)
           .complain("names the unknown point '" + entry.first + "': allowed: a name of the section points");
     }
   }
@@ -372,13 +372,13 @@ void checkBlock(const YamlValue& root, const Profile& profile, Problems& problem
   {
     if (profile.functions.count(function) == 0)
     {
-      locate(root, "block", problems)
+      locate(root, "block", complaints)
           .complain("needs function " + util::hexNumber(function) + ": limits.functions lacks it");
     }
   }
 }
 
-void checkMap(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkMap(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   if (!profile.map)
   {
@@ -387,7 +387,7 @@ void checkMap(const YamlValue& root, const Profile& profile, Problems& problems)
   const RegisterMap& map = *profile.map;
   if (map.read.size > profile.read_registers)
   {
-    locate(root, "map.read", problems)
+    locate(root, "map.read", complaints)
         .complain("reads more registers than limits.read_registers allows (" + std::to_string(profile.read_registers) +
                   ")");
   }
@@ -398,22 +398,22 @@ void checkMap(const YamlValue& root, const Profile& profile, Problems& problems)
                                       [&word](const auto& entry) { return entry.second == word.number; });
     if (!inside || !in_table)
     {
-      locate(root, "map.words", problems)
+      locate(root, "map.words", complaints)
           .complain("register " + util::hexNumber(word.number) +
                     (inside ? ": the table lays nothing over it" : ": is not in the read of the map"));
     }
   }
   if (profile.block)
   {
-    locate(root, "map", problems).complain("stands beside a section block: allowed: one of them");
+    locate(root, "map", complaints).complain("stands beside a section block: allowed: one of them");
   }
 }
 
-void checkOverlaps(const YamlValue& root, const Profile& profile, Problems& problems)
+void checkOverlaps(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
-  checkPointOverlaps(root, profile, problems);
-  checkParameterOverlaps(root, profile, problems);
-  checkFlagOverlaps(root, profile, problems);
+  checkPointOverlaps(root, profile, complaints);
+  checkParameterOverlaps(root, profile, complaints);
+  checkFlagOverlaps(root, profile, complaints);
 }
 }  // namespace drive
 }  // namespace inverter_bus

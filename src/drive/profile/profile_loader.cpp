@@ -4,12 +4,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include "drive/profile/problems.h"
+#include "config/yaml.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/profile_overrides.h"
 #include "drive/profile/profile_skip.h"
-#include "drive/profile/yaml_reader.h"
-#include "drive/profile/yaml_value.h"
 #include "inverter_bus/drive/profile.h"
 #include "util/printable.h"
 #include "util/text.h"
@@ -35,31 +33,25 @@ std::string profilePath(const std::string& name_or_path, const std::string& dire
   {
     return (std::filesystem::path(directory) / (name_or_path + EXTENSION)).string();
   }
-  problems.add(place.empty() ? directory : place, "drive",
-               "value '" + util::printable(name_or_path) + "': allowed: an absolute path, or one of: " +
-                   (known.empty() ? "(no profiles in " + directory + ")" : util::joined(known)));
+  problems.complain({ place.empty() ? directory : place, "drive" },
+                    "value '" + util::printable(name_or_path) + "': allowed: an absolute path, or one of: " +
+                        (known.empty() ? "(no profiles in " + directory + ")" : util::joined(known)));
   return "";
 }
 
-void applyOverrides(YamlValue& root, const ProfileChanges& changes, Problems& problems)
+void applyOverrides(Value& root, Value overrides, Problems& problems)
 {
-  if (changes.overrides_yaml.empty())
+  if (overrides.type == Value::Type::None)
   {
     return;
   }
-  const std::string place = changes.place.empty() ? "overrides" : changes.place;
-  auto overrides = parseYaml(changes.overrides_yaml, place, false, problems);
-  if (!overrides || overrides->kind == YamlValue::Kind::Empty)
+  if (overrides.type != Value::Type::Map)
   {
+    problems.complain({ overrides.place, "overrides" }, "allowed: a map of profile keys");
     return;
   }
-  if (overrides->kind != YamlValue::Kind::Map)
-  {
-    problems.add(place, "overrides", "allowed: a map of profile keys");
-    return;
-  }
-  nameConstants(root, *overrides);
-  mergeOverrides(root, *overrides);
+  nameConstants(root, overrides);
+  mergeOverrides(root, overrides);
 }
 
 /// A constant may be confirmed by its own name, whatever its mark is called.
@@ -78,21 +70,19 @@ std::vector<std::string> markNames(const std::vector<std::string>& names, const 
 
 Profile readProfile(const std::string& path, const ProfileChanges& changes, Problems& problems)
 {
-  const auto text = readTextFile(path, problems);
-  auto root = text ? parseYaml(*text, path, true, problems) : std::nullopt;
+  auto root = config::readYamlFile(path, config::Purpose::Profile, problems);
   if (!root)
   {
     return Profile();
   }
   const std::set<std::string> known = unconfirmedNames(*root);
   const std::map<std::string, std::string> constants = constantMarks(*root);
-  applyOverrides(*root, changes, problems);
+  applyOverrides(*root, changes.overrides, problems);
   const std::string& place = changes.confirm_place.empty() ? changes.place : changes.confirm_place;
   confirm(*root, markNames(changes.confirm, known, constants), known, place.empty() ? path : place, problems);
   skipFields(*root, changes.skip);
   Profile profile = buildProfile(*root, problems);
   profile.file = path;
-  profile.mistakes = problems.harmless();
   return profile;
 }
 }  // namespace
@@ -128,10 +118,9 @@ Profile loadProfile(const std::string& name_or_path, const std::string& director
 std::vector<std::string> checkProfile(const std::string& path)
 {
   Problems problems;
-  readProfile(path, ProfileChanges(), problems);
+  const Profile profile = readProfile(path, ProfileChanges(), problems);
   std::vector<std::string> lines = problems.lines();
-  const std::vector<std::string> harmless = problems.harmless();
-  lines.insert(lines.end(), harmless.begin(), harmless.end());
+  lines.insert(lines.end(), profile.mistakes.begin(), profile.mistakes.end());
   return lines;
 }
 }  // namespace drive

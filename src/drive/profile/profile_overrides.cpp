@@ -3,9 +3,9 @@
 #include "drive/profile/profile_overrides.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "drive/profile/item_reader.h"
-#include "drive/profile/yaml_reader.h"
 #include "util/printable.h"
 #include "util/text.h"
 
@@ -19,7 +19,7 @@ const std::string MARK = "unconfirmed";
 const std::string RANGE_MARK = "range_unconfirmed";
 
 /// Keys that `unconfirmed` is about. A title or `slow` says nothing about whether the address is right.
-bool confirms(const YamlEntry& entry)
+bool confirms(const Entry& entry)
 {
   static const std::set<std::string> KEYS = {
     "register",         "coil",   "count", "words", "signed", "resolution", "bit", "mask",     "values",
@@ -30,19 +30,19 @@ bool confirms(const YamlEntry& entry)
 }
 
 /// {coil: 5} over {register: 7, words: 2}: another place, so nothing of the old one is left.
-bool changesSpace(const YamlValue& base, const YamlValue& change)
+bool changesSpace(const Value& base, const Value& change)
 {
   static const std::vector<std::string> PLACES = { "register", "coil", "variable", "operation", "controller_status" };
-  const auto in = [](const YamlValue& map) {
+  const auto in = [](const Value& map) {
     return std::find_if(PLACES.begin(), PLACES.end(),
                         [&map](const std::string& key) { return map.find(key) != nullptr; });
   };
   return in(base) != PLACES.end() && in(change) != PLACES.end() && in(base) != in(change);
 }
 
-void removeMarks(YamlValue& base, const YamlValue& change)
+void removeMarks(Value& base, const Value& change)
 {
-  if (std::any_of(change.entries.begin(), change.entries.end(), confirms))
+  if (std::any_of(change.map.begin(), change.map.end(), confirms))
   {
     base.erase(MARK);
   }
@@ -53,7 +53,7 @@ void removeMarks(YamlValue& base, const YamlValue& change)
 }
 
 /// {bit: 3} over {values: ...}, {nonzero: true} over {bit: 3}: another way to read the place, so the old one goes.
-void removeOtherReading(YamlValue& base, const YamlValue& change)
+void removeOtherReading(Value& base, const Value& change)
 {
   static const std::vector<std::string> READINGS = { "bit", "values", "nonzero" };
   const auto given = [&change](const std::string& key) { return change.find(key) != nullptr; };
@@ -74,14 +74,14 @@ void removeOtherReading(YamlValue& base, const YamlValue& change)
   }
 }
 
-bool isMark(const YamlEntry& entry)
+bool isMark(const Entry& entry)
 {
-  return (entry.key == MARK || entry.key == RANGE_MARK) && entry.value.kind == YamlValue::Kind::Scalar;
+  return (entry.key == MARK || entry.key == RANGE_MARK) && entry.value.isScalar();
 }
 
-void collect(const YamlValue& value, std::set<std::string>& names)
+void collect(const Value& value, std::set<std::string>& names)
 {
-  for (const YamlEntry& entry : value.entries)
+  for (const Entry& entry : value.map)
   {
     if (isMark(entry))
     {
@@ -89,56 +89,56 @@ void collect(const YamlValue& value, std::set<std::string>& names)
     }
     collect(entry.value, names);
   }
-  for (const YamlValue& item : value.items)
+  for (const Value& item : value.list)
   {
     collect(item, names);
   }
 }
 
 /// {value: unknown}, {register: unknown}: nothing is there that could be confirmed.
-bool isUnknown(const YamlValue& map)
+bool isUnknown(const Value& map)
 {
-  return std::any_of(map.entries.begin(), map.entries.end(), [](const YamlEntry& entry) {
+  return std::any_of(map.map.begin(), map.map.end(), [](const Entry& entry) {
     const bool place =
         entry.key == "value" || entry.key == "register" || entry.key == "coil" || entry.key == "variable";
-    return place && entry.value.kind == YamlValue::Kind::Scalar && entry.value.text == UNKNOWN;
+    return place && entry.value.isScalar() && entry.value.text == UNKNOWN;
   });
 }
 
-void removeNames(YamlValue& value, const std::set<std::string>& names)
+void removeNames(Value& value, const std::set<std::string>& names)
 {
   const bool unknown = isUnknown(value);
-  const auto confirmed = [&names, unknown](const YamlEntry& entry) {
+  const auto confirmed = [&names, unknown](const Entry& entry) {
     return isMark(entry) && !unknown && names.count(entry.value.text) != 0;
   };
-  value.entries.erase(std::remove_if(value.entries.begin(), value.entries.end(), confirmed), value.entries.end());
-  for (YamlEntry& entry : value.entries)
+  value.map.erase(std::remove_if(value.map.begin(), value.map.end(), confirmed), value.map.end());
+  for (Entry& entry : value.map)
   {
     removeNames(entry.value, names);
   }
-  for (YamlValue& item : value.items)
+  for (Value& item : value.list)
   {
     removeNames(item, names);
   }
 }
 }  // namespace
 
-std::set<std::string> unconfirmedNames(const YamlValue& root)
+std::set<std::string> unconfirmedNames(const Value& root)
 {
   std::set<std::string> names;
   collect(root, names);
   return names;
 }
 
-std::map<std::string, std::string> constantMarks(const YamlValue& root)
+std::map<std::string, std::string> constantMarks(const Value& root)
 {
   std::map<std::string, std::string> marks;
   for (const char* group : { "constants", "operation_codes" })
   {
-    const YamlValue* constants = root.find(group);
-    for (const YamlEntry& entry : constants == nullptr ? std::vector<YamlEntry>() : constants->entries)
+    const Value* constants = root.find(group);
+    for (const Entry& entry : constants == nullptr ? std::vector<Entry>() : constants->map)
     {
-      if (const YamlValue* mark = entry.value.find(MARK))
+      if (const Value* mark = entry.value.find(MARK))
       {
         marks[entry.key] = mark->text;
       }
@@ -147,75 +147,65 @@ std::map<std::string, std::string> constantMarks(const YamlValue& root)
   return marks;
 }
 
-void nameConstants(const YamlValue& root, YamlValue& changes)
+void nameConstants(const Value& root, Value& changes)
 {
-  const YamlValue* constants = root.find("constants");
-  if (constants == nullptr || changes.kind != YamlValue::Kind::Map)
+  const Value* constants = root.find("constants");
+  if (constants == nullptr || changes.type != Value::Type::Map)
   {
     return;
   }
-  YamlValue moved;
-  moved.kind = YamlValue::Kind::Map;
-  moved.where = changes.where;
-  for (auto entry = changes.entries.begin(); entry != changes.entries.end();)
-  {
-    const bool constant = constants->find(entry->key) != nullptr && root.find(entry->key) == nullptr;
-    if (!constant)
-    {
-      ++entry;
-      continue;
-    }
-    moved.entries.push_back(*entry);
-    entry = changes.entries.erase(entry);
-  }
-  if (moved.entries.empty())
+  const auto is_constant = [&root, constants](const Entry& entry) {
+    return constants->find(entry.key) != nullptr && root.find(entry.key) == nullptr;
+  };
+  const auto first = std::stable_partition(changes.map.begin(), changes.map.end(), std::not_fn(is_constant));
+  const std::vector<Entry> moved(first, changes.map.end());
+  changes.map.erase(first, changes.map.end());
+  if (moved.empty())
   {
     return;
   }
-  if (YamlValue* given = changes.find("constants"))
+  if (changes.find("constants") == nullptr)
   {
-    given->entries.insert(given->entries.end(), moved.entries.begin(), moved.entries.end());
-    return;
+    Value section = Value::ofMap({});
+    section.place = changes.place;
+    changes.map.push_back({ "constants", section });
   }
-  YamlEntry entry;
-  entry.key = "constants";
-  entry.where = changes.where;
-  entry.value = moved;
-  changes.entries.push_back(entry);
+  Value& given = *changes.find("constants");
+  given.map.insert(given.map.end(), moved.begin(), moved.end());
 }
 
-void mergeOverrides(YamlValue& root, const YamlValue& changes)
+void mergeOverrides(Value& root, const Value& changes)
 {
-  YamlValue* const value = root.find("value");
-  if (root.kind == YamlValue::Kind::Map && value != nullptr && changes.kind == YamlValue::Kind::Scalar)
+  Value* const value = root.find("value");
+  if (root.type == Value::Type::Map && value != nullptr && changes.isScalar())
   {
     // A plain number stands for the whole constant.
     *value = changes;
     root.erase(MARK);
     return;
   }
-  if (root.kind != YamlValue::Kind::Map || changes.kind != YamlValue::Kind::Map || changesSpace(root, changes))
+  if (root.type != Value::Type::Map || changes.type != Value::Type::Map || changesSpace(root, changes))
   {
     root = changes;
     return;
   }
   removeMarks(root, changes);
   removeOtherReading(root, changes);
-  for (const YamlEntry& change : changes.entries)
+  for (const Entry& change : changes.map)
   {
-    if (YamlValue* found = root.find(change.key))
+    if (Value* found = root.find(change.key))
     {
       mergeOverrides(*found, change.value);
     }
     else
     {
-      root.entries.push_back(change);
+      root.map.push_back(change);
     }
   }
 }
 
-void confirm(YamlValue& root, const std::vector<std::string>& names, const std::set<std::string>& known,
-             const std::string& place, Problems& problems)
+void confirm(Value& root, const std::vector<std::string>& names, const std::set<std::string>& known,
+             const std::string& place, config::Complaints& complaints)
 {
   std::set<std::string> confirmed;
   for (const std::string& name : names)
@@ -230,8 +220,8 @@ void confirm(YamlValue& root, const std::vector<std::string>& names, const std::
     }
     else
     {
-      problems.add(
-          place, "confirm",
+      complaints.complain(
+          { place, "confirm" },
           "value '" + util::printable(name) +
               "': " + (known.empty() ? "this profile has nothing to confirm" : "allowed: all, " + util::joined(known)));
     }

@@ -8,29 +8,31 @@
 #include <string>
 #include <vector>
 
-#include "drive/profile/problems.h"
-#include "drive/profile/yaml_value.h"
+#include "config/complaints.h"
 
 namespace inverter_bus
 {
 namespace drive
 {
+using config::Entry;
+using config::Value;
+
 /// All names that a profile marks as unconfirmed.
-std::set<std::string> unconfirmedNames(const YamlValue& root);
+std::set<std::string> unconfirmedNames(const Value& root);
 
 /// Names of the constants and the marks that they carry: a user may confirm a constant by either.
-std::map<std::string, std::string> constantMarks(const YamlValue& root);
+std::map<std::string, std::string> constantMarks(const Value& root);
 
 /// Moves keys of \p changes that are names of constants in \p root under `constants`, where they belong.
-void nameConstants(const YamlValue& root, YamlValue& changes);
+void nameConstants(const Value& root, Value& changes);
 
 /// Puts \p changes over \p root: maps are merged key by key, anything else is replaced. A value that says what is
 /// written, where it lies or what a count means confirms the item that it is in.
-void mergeOverrides(YamlValue& root, const YamlValue& changes);
+void mergeOverrides(Value& root, const Value& changes);
 
 /// Removes the marks of \p names (or of all of them); a name that is not in \p known is a problem.
-void confirm(YamlValue& root, const std::vector<std::string>& names, const std::set<std::string>& known,
-             const std::string& place, Problems& problems);
+void confirm(Value& root, const std::vector<std::string>& names, const std::set<std::string>& known,
+             const std::string& place, config::Complaints& complaints);
 }  // namespace drive
 }  // namespace inverter_bus
 

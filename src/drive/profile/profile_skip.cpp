@@ -17,27 +17,27 @@ const std::string STORE_BUSY = "store_busy";
 const std::string TRIP_MEMORY = "trip_memory";
 const std::string CONSTANTS = "constants";
 
-void collectTexts(const YamlValue& value, std::set<std::string>& texts)
+void collectTexts(const Value& value, std::set<std::string>& texts)
 {
-  if (value.kind == YamlValue::Kind::Scalar)
+  if (value.isScalar())
   {
     texts.insert(value.text);
   }
-  for (const YamlValue& item : value.items)
+  for (const Value& item : value.list)
   {
     collectTexts(item, texts);
   }
-  for (const YamlEntry& entry : value.entries)
+  for (const Entry& entry : value.map)
   {
     collectTexts(entry.value, texts);
   }
 }
 
 /// Constants that something outside their own section names.
-std::set<std::string> namedConstants(const YamlValue& root)
+std::set<std::string> namedConstants(const Value& root)
 {
   std::set<std::string> texts;
-  for (const YamlEntry& entry : root.entries)
+  for (const Entry& entry : root.map)
   {
     if (entry.key != CONSTANTS)
     {
@@ -45,8 +45,8 @@ std::set<std::string> namedConstants(const YamlValue& root)
     }
   }
   std::set<std::string> named;
-  const YamlValue* constants = root.find(CONSTANTS);
-  for (const YamlEntry& entry : constants == nullptr ? std::vector<YamlEntry>() : constants->entries)
+  const Value* constants = root.find(CONSTANTS);
+  for (const Entry& entry : constants == nullptr ? std::vector<Entry>() : constants->map)
   {
     if (texts.count(entry.key) != 0)
     {
@@ -56,27 +56,27 @@ std::set<std::string> namedConstants(const YamlValue& root)
   return named;
 }
 
-/// The reason of a trip stays; what the drive kept beside it goes.
-void eraseAllButCode(YamlValue& fields)
+/// The reason of a trip stays; the values that the drive kept beside it go.
+void eraseAllButCode(Value& fields)
 {
-  fields.entries.erase(std::remove_if(fields.entries.begin(), fields.entries.end(),
-                                      [](const YamlEntry& entry) { return entry.key != "code"; }),
-                       fields.entries.end());
+  fields.map.erase(
+      std::remove_if(fields.map.begin(), fields.map.end(), [](const Entry& entry) { return entry.key != "code"; }),
+      fields.map.end());
 }
 
-void skipTripMemory(YamlValue& root)
+void skipTripMemory(Value& root)
 {
-  YamlValue* faults = root.find("faults");
-  YamlValue* history = faults == nullptr ? nullptr : faults->find("history");
+  Value* faults = root.find("faults");
+  Value* history = faults == nullptr ? nullptr : faults->find("history");
   if (history == nullptr)
   {
     return;
   }
-  for (YamlValue& entry : history->items)
+  for (Value& entry : history->list)
   {
     eraseAllButCode(entry);
   }
-  if (YamlValue* fields = history->find("fields"))
+  if (Value* fields = history->find("fields"))
   {
     eraseAllButCode(*fields);
   }
@@ -100,7 +100,7 @@ const std::set<std::string>& protectedFields()
   return NAMES;
 }
 
-void skipFields(YamlValue& root, const std::vector<std::string>& names)
+void skipFields(Value& root, const std::vector<std::string>& names)
 {
   const std::set<std::string> before = namedConstants(root);
   for (const std::string& name : names)
@@ -113,7 +113,7 @@ void skipFields(YamlValue& root, const std::vector<std::string>& names)
     {
       skipTripMemory(root);
     }
-    else if (YamlValue* status = root.find("status"))
+    else if (Value* status = root.find("status"))
     {
       status->erase(name);
     }

@@ -6,15 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "drive/profile/yaml_value.h"
+#include "inverter_bus/config/value.h"
 
 namespace inverter_bus
 {
 namespace drive
 {
-/// Takes what \p names leave out (see skippableFields()) from the tree of a profile, before anybody makes reads or marks
-/// of it. What a drive does not have is left out already. Constants that only such items used go with them.
-void skipFields(YamlValue& root, const std::vector<std::string>& names);
+using config::Entry;
+using config::Value;
+
+/// Takes what \p names leave out (see skippableFields()) from the tree of a profile, before reads or marks are made
+/// from it. Fields that a drive does not have are left out already. Constants that only such items used go with them.
+void skipFields(Value& root, const std::vector<std::string>& names);
 }  // namespace drive
 }  // namespace inverter_bus
 

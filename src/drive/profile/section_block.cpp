@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 // Sections block and ratings.
 
-#include "drive/profile/numbers.h"
+#include "config/numerals.h"
 #include "drive/profile/profile_builder.h"
 
 namespace inverter_bus
@@ -11,7 +11,7 @@ namespace drive
 {
 namespace
 {
-std::optional<Item> readWindow(YamlMap& map, const Numbering& numbering)
+std::optional<Item> readWindow(Section& map, const Numbering& numbering)
 {
   ItemRules rules;
   rules.coil = false;
@@ -19,12 +19,12 @@ std::optional<Item> readWindow(YamlMap& map, const Numbering& numbering)
   return readItem(map, numbering, rules);
 }
 
-std::vector<std::string> readSlots(YamlMap& map)
+std::vector<std::string> readSlots(Section& map)
 {
   std::vector<std::string> slots;
   if (const auto cursor = map.require("slots"))
   {
-    for (const YamlCursor& entry : cursor->list())
+    for (const Cursor& entry : cursor->list())
     {
       slots.push_back(entry.name().value_or(""));
     }
@@ -32,25 +32,25 @@ std::vector<std::string> readSlots(YamlMap& map)
   return slots;
 }
 
-void readBlockRead(YamlMap& map, const Numbering& numbering, Block& block)
+void readBlockRead(Section& map, const Numbering& numbering, Block& block)
 {
   if (const auto cursor = map.require("read"))
   {
-    YamlMap read(*cursor);
+    Section read(*cursor);
     block.read = readWindow(read, numbering).value_or(Item());
     block.read_slots = readSlots(read);
     read.finish();
   }
 }
 
-void readBlockWrite(YamlMap& map, const Numbering& numbering, Block& block)
+void readBlockWrite(Section& map, const Numbering& numbering, Block& block)
 {
   const auto cursor = map.require("write");
   if (!cursor)
   {
     return;
   }
-  YamlMap write(*cursor);
+  Section write(*cursor);
   block.write = readWindow(write, numbering).value_or(Item());
   block.write_slots = readSlots(write);
   if (const auto select = write.require("select"))
@@ -68,10 +68,10 @@ void readBlockWrite(YamlMap& map, const Numbering& numbering, Block& block)
   write.finish();
 }
 
-void readCode(const std::string& key, const YamlCursor& cursor, const Numbering& numbering, Block& block)
+void readCode(const std::string& key, const Cursor& cursor, const Numbering& numbering, Block& block)
 {
-  const auto code = parseInteger(key);
-  YamlMap map(cursor);
+  const auto code = config::parseInteger(key);
+  Section map(cursor);
   BlockCode entry;
   entry.title = map.text("title");
   ItemRules rules;
@@ -92,14 +92,14 @@ void readCode(const std::string& key, const YamlCursor& cursor, const Numbering&
 }
 }  // namespace
 
-void readBlock(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readBlock(Section& root, const Numbering& numbering, Profile& profile)
 {
   const auto cursor = numbering.variables ? std::nullopt : root.find("block");
   if (!cursor)
   {
     return;
   }
-  YamlMap map(*cursor);
+  Section map(*cursor);
   Block block;
   readBlockRead(map, numbering, block);
   readBlockWrite(map, numbering, block);
@@ -112,7 +112,7 @@ void readBlock(YamlMap& root, const Numbering& numbering, Profile& profile)
   }
   if (const auto apply_cursor = map.find("apply"))
   {
-    YamlMap apply(*apply_cursor);
+    Section apply(*apply_cursor);
     block.apply_parameter = apply.name("parameter");
     block.apply_value = static_cast<std::uint32_t>(apply.integer("value", 0, 0xFFFF, 1));
     apply.finish();
@@ -122,11 +122,11 @@ void readBlock(YamlMap& root, const Numbering& numbering, Profile& profile)
   profile.block = block;
 }
 
-void readRatings(YamlMap& root, Profile& profile)
+void readRatings(Section& root, Profile& profile)
 {
   if (const auto cursor = root.find("ratings"))
   {
-    YamlMap map(*cursor);
+    Section map(*cursor);
     profile.rated_current_parameter = map.name("current");
     profile.rated_voltage_parameter = map.name("voltage");
     map.text("source");

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/units.h"
 #include "util/text.h"
@@ -25,11 +24,11 @@ const std::vector<std::string>& sequenceNames()
   return NAMES;
 }
 
-void readPoint(const std::string& name, const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readPoint(const std::string& name, const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
   ItemRules rules;
   rules.written = true;
-  YamlMap map(cursor);
+  Section map(cursor);
   const auto item = readItem(map, numbering, rules);
   const bool wears = map.flag("wears", false);
   map.finish();
@@ -54,10 +53,10 @@ void readPoint(const std::string& name, const YamlCursor& cursor, const Numberin
 }
 
 /// The number behind a name of the sections constants and operation_codes.
-bool readNamedValue(const YamlCursor& value, const Numbering& numbering, Step& step)
+bool readNamedValue(const Cursor& value, const Numbering& numbering, Step& step)
 {
   const auto constant = numbering.constants.find(value.value().text);
-  if (value.value().kind != YamlValue::Kind::Scalar || constant == numbering.constants.end())
+  if (!value.value().isScalar() || constant == numbering.constants.end())
   {
     return false;
   }
@@ -65,8 +64,8 @@ bool readNamedValue(const YamlCursor& value, const Numbering& numbering, Step& s
   const double number = constant->second.value.value_or(0.0);
   if (number != std::floor(number) || number < 0.0 || number > 4294967295.0)
   {
-    value.problems().add(constant->second.place, constant->second.key,
-                         "value " + util::exactText(number) + ": allowed: an integer from 0 on");
+    value.complaints().complain({ constant->second.place, constant->second.key },
+                                "value " + util::exactText(number) + ": allowed: an integer of 0 or more");
     return true;
   }
   step.value = static_cast<std::uint32_t>(number);
@@ -74,7 +73,7 @@ bool readNamedValue(const YamlCursor& value, const Numbering& numbering, Step& s
 }
 
 /// {run: 1}, {frequency: setpoint}, {trip_reset: 1, pause: 0.1}, {command: 0xE000, reply: none}
-void readStep(const YamlCursor& cursor, const Numbering& numbering, Sequence& sequence)
+void readStep(const Cursor& cursor, const Numbering& numbering, Sequence& sequence)
 {
   Step step;
   std::size_t points = 0;
@@ -82,7 +81,7 @@ void readStep(const YamlCursor& cursor, const Numbering& numbering, Sequence& se
   {
     if (key == "pause")
     {
-      step.pause = value.number(0.0, MAX_PAUSE).value_or(0.0);
+      step.pause = value.number({ 0.0, MAX_PAUSE }).value_or(0.0);
       continue;
     }
     if (key == "reply")
@@ -115,13 +114,13 @@ void readStep(const YamlCursor& cursor, const Numbering& numbering, Sequence& se
   }
 }
 
-void readSequence(const std::string& name, const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readSequence(const std::string& name, const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
   Sequence sequence;
-  std::optional<YamlCursor> steps = cursor;
+  std::optional<Cursor> steps = cursor;
   if (cursor.isMap())
   {
-    YamlMap map(cursor);
+    Section map(cursor);
     steps = map.require("steps");
     sequence.unconfirmed = map.name("unconfirmed");
     map.text("source");
@@ -131,11 +130,11 @@ void readSequence(const std::string& name, const YamlCursor& cursor, const Numbe
   {
     return;
   }
-  for (const YamlCursor& step : steps->list())
+  for (const Cursor& step : steps->list())
   {
     readStep(step, numbering, sequence);
   }
-  if (steps->isList() && steps->value().items.empty())
+  if (steps->isList() && steps->value().list.empty())
   {
     steps->complain("has no steps");
   }
@@ -146,7 +145,7 @@ void readSequence(const std::string& name, const YamlCursor& cursor, const Numbe
   profile.sequences[name] = sequence;
 }
 
-void readSequences(const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readSequences(const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
   const auto& names = sequenceNames();
   for (const auto& [name, sequence] : cursor.entries())
@@ -160,7 +159,7 @@ void readSequences(const YamlCursor& cursor, const Numbering& numbering, Profile
   }
 }
 
-void readStoreBusy(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readStoreBusy(Section& root, const Numbering& numbering, Profile& profile)
 {
   const auto cursor = root.find("store_busy");
   if (!cursor)
@@ -170,7 +169,7 @@ void readStoreBusy(YamlMap& root, const Numbering& numbering, Profile& profile)
   ItemRules rules;
   rules.bit = true;
   rules.scale = false;
-  YamlMap map(*cursor);
+  Section map(*cursor);
   profile.store_busy = readItem(map, numbering, rules);
   map.finish();
   if (profile.store_busy && !profile.store_busy->unconfirmed.empty())
@@ -180,7 +179,7 @@ void readStoreBusy(YamlMap& root, const Numbering& numbering, Profile& profile)
 }
 }  // namespace
 
-void readCommands(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readCommands(Section& root, const Numbering& numbering, Profile& profile)
 {
   if (const auto cursor = root.require("points"))
   {
@@ -188,7 +187,7 @@ void readCommands(YamlMap& root, const Numbering& numbering, Profile& profile)
     {
       if (name == "pause" || name == "reply")
       {
-        point.complain("'" + name + "' is a word of the sequences: allowed: any other name");
+        point.complain("'" + name + "' is a keyword of the sequences: allowed: any other name");
         continue;
       }
       readPoint(name, point, numbering, profile);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <regex>
 
-#include "drive/profile/numbers.h"
+#include "config/numerals.h"
 #include "drive/profile/profile_builder.h"
 #include "util/text.h"
 
@@ -17,12 +17,11 @@ namespace drive
 namespace
 {
 /// Command code and related information. Without quotes YAML reads 0100 as an octal number, which would be another code.
-std::optional<double> readOperationCode(const YamlCursor& cursor)
+std::optional<double> readOperationCode(const Cursor& cursor)
 {
   static const std::regex FORM("[0-9A-Fa-f]{4}");
-  const YamlValue& value = cursor.value();
-  if (value.kind != YamlValue::Kind::Scalar || value.scalar.type != config::Scalar::Type::Text ||
-      !std::regex_match(value.text, FORM))
+  const Value& value = cursor.value();
+  if (value.type != Value::Type::Text || !std::regex_match(value.text, FORM))
   {
     cursor.reject("four hexadecimal digits in quotes, such as \"0100\"");
     return std::nullopt;
@@ -30,10 +29,10 @@ std::optional<double> readOperationCode(const YamlCursor& cursor)
   return static_cast<double>(std::strtoul(value.text.c_str(), nullptr, 16));
 }
 
-Constant readConstant(const YamlCursor& cursor, bool operation_code)
+Constant readConstant(const Cursor& cursor, bool operation_code)
 {
   Constant constant;
-  YamlMap map(cursor);
+  Section map(cursor);
   const auto value = map.require("value");
   constant.unconfirmed = map.name("unconfirmed");
   constant.where = map.text("where");
@@ -51,13 +50,13 @@ Constant readConstant(const YamlCursor& cursor, bool operation_code)
     }
     return constant;
   }
-  constant.place = value->value().where;
+  constant.place = value->value().place;
   constant.key = value->path();
-  constant.value = operation_code ? readOperationCode(*value) : value->number(-4294967296.0, 4294967296.0);
+  constant.value = operation_code ? readOperationCode(*value) : value->number({ -4294967296.0, 4294967296.0 });
   return constant;
 }
 
-void readGroup(YamlMap& root, const std::string& key, bool operation_codes, Numbering& numbering)
+void readGroup(Section& root, const std::string& key, bool operation_codes, Numbering& numbering)
 {
   const auto cursor = root.find(key);
   if (!cursor)
@@ -72,7 +71,7 @@ void readGroup(YamlMap& root, const std::string& key, bool operation_codes, Numb
       entry.complain("unknown key: allowed: " + util::joined(operationCodeNames()));
       continue;
     }
-    if (parseInteger(name) || name == "setpoint" || name == UNKNOWN || numbering.constants.count(name) != 0)
+    if (config::parseInteger(name) || name == "setpoint" || name == UNKNOWN || numbering.constants.count(name) != 0)
     {
       entry.complain("can't be the name of a constant: allowed: any other name");
       continue;
@@ -89,7 +88,7 @@ const std::vector<std::string>& operationCodeNames()
   return NAMES;
 }
 
-void readConstants(YamlMap& root, Numbering& numbering, Profile& profile)
+void readConstants(Section& root, Numbering& numbering, Profile& profile)
 {
   readGroup(root, "constants", false, numbering);
   if (numbering.variables)

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 the inverter_bus authors
 // Sections faults and warnings: why the drive tripped, now and before.
 
-#include "drive/profile/numbers.h"
+#include "config/numerals.h"
 #include "drive/profile/profile_builder.h"
 #include "drive/profile/status_fields.h"
 #include "util/text.h"
@@ -16,13 +16,13 @@ namespace
 constexpr std::int64_t MAX_ENTRIES = 100;
 
 /// A text, or {text: ..., unconfirmed: NAME} where it isn't from the drive's own manual.
-std::optional<std::string> readReason(const YamlCursor& cursor, Profile& profile)
+std::optional<std::string> readReason(const Cursor& cursor, Profile& profile)
 {
   if (!cursor.isMap())
   {
     return cursor.text();
   }
-  YamlMap map(cursor);
+  Section map(cursor);
   const auto text_cursor = map.require("text");
   auto text = text_cursor ? text_cursor->text() : std::nullopt;
   const std::string mark = map.name("unconfirmed");
@@ -37,12 +37,12 @@ std::optional<std::string> readReason(const YamlCursor& cursor, Profile& profile
   return text;
 }
 
-FaultTable readTable(const YamlCursor& cursor, Profile& profile)
+FaultTable readTable(const Cursor& cursor, Profile& profile)
 {
   FaultTable table;
   for (const auto& [key, reason] : cursor.entries())
   {
-    const auto code = parseInteger(key);
+    const auto code = config::parseInteger(key);
     if (!code || *code < 1 || *code > 0xFFFF)
     {
       reason.complain("the code '" + key + "': allowed: an integer from 1 to 65535");
@@ -85,9 +85,9 @@ void noteMark(const Item& item, Profile& profile)
 }
 
 /// One field of a trip as {offset: 2, words: 2, ...}: an item that is counted from the entry's first register.
-std::optional<Item> readOffsetItem(const YamlCursor& cursor)
+std::optional<Item> readOffsetItem(const Cursor& cursor)
 {
-  YamlMap map(cursor);
+  Section map(cursor);
   Item item;
   const auto offset = map.require("offset");
   item.number = static_cast<std::uint16_t>(offset ? offset->integer(0, 255).value_or(0) : 0);
@@ -105,7 +105,7 @@ std::optional<Item> readOffsetItem(const YamlCursor& cursor)
   return cursor.isMap() ? std::optional<Item>(item) : std::nullopt;
 }
 
-std::map<std::string, Item> readOffsetFields(const YamlCursor& cursor, Profile& profile)
+std::map<std::string, Item> readOffsetFields(const Cursor& cursor, Profile& profile)
 {
   std::map<std::string, Item> fields;
   for (const auto& [name, field] : cursor.entries())
@@ -116,7 +116,7 @@ std::map<std::string, Item> readOffsetFields(const YamlCursor& cursor, Profile& 
       continue;
     }
     const auto item = readOffsetItem(field);
-    if (item && !leftOutForUnit(name, *item, field))
+    if (item && !leftOutForUnit(name, *item, field, profile))
     {
       fields[name] = *item;
       noteMark(*item, profile);
@@ -126,9 +126,9 @@ std::map<std::string, Item> readOffsetFields(const YamlCursor& cursor, Profile& 
 }
 
 /// history: {first: 0x0012, stride: 10, count: 6, fields: {...}}: equal blocks, newest first.
-void readRegularHistory(const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readRegularHistory(const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
-  YamlMap map(cursor);
+  Section map(cursor);
   const auto first_cursor = map.require("first");
   const auto first = first_cursor
                          ? first_cursor->integer(numbering.lowest(Space::Register), numbering.highest(Space::Register))
@@ -164,11 +164,11 @@ void readRegularHistory(const YamlCursor& cursor, const Numbering& numbering, Pr
 }
 
 /// history: [{code: {register: 0xFE10}}, ...]: entries that lie anywhere, newest first.
-void readListedHistory(const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readListedHistory(const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
   ItemRules rules;
   rules.coil = false;
-  for (const YamlCursor& listed : cursor.list())
+  for (const Cursor& listed : cursor.list())
   {
     std::map<std::string, Item> entry;
     for (const auto& [name, field] : listed.entries())
@@ -178,10 +178,10 @@ void readListedHistory(const YamlCursor& cursor, const Numbering& numbering, Pro
         field.complain("unknown key: allowed: " + allowedRecordFields());
         continue;
       }
-      YamlMap map(field);
+      Section map(field);
       const auto item = readItem(map, numbering, rules);
       map.finish();
-      if (item && !leftOutForUnit(name, *item, field))
+      if (item && !leftOutForUnit(name, *item, field, profile))
       {
         entry[name] = *item;
         noteMark(*item, profile);
@@ -191,7 +191,7 @@ void readListedHistory(const YamlCursor& cursor, const Numbering& numbering, Pro
   }
 }
 
-void checkHistory(const YamlCursor& cursor, const Profile& profile)
+void checkHistory(const Cursor& cursor, const Profile& profile)
 {
   for (const auto& entry : profile.history.entries)
   {
@@ -205,11 +205,11 @@ void checkHistory(const YamlCursor& cursor, const Profile& profile)
 }
 }  // namespace
 
-void readFaults(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readFaults(Section& root, const Numbering& numbering, Profile& profile)
 {
   if (const auto cursor = root.find("faults"))
   {
-    YamlMap faults(*cursor);
+    Section faults(*cursor);
     if (const auto table = faults.find("table"))
     {
       profile.faults = readTable(*table, profile);
@@ -224,7 +224,7 @@ void readFaults(YamlMap& root, const Numbering& numbering, Profile& profile)
   }
   if (const auto cursor = root.find("warnings"))
   {
-    YamlMap warnings(*cursor);
+    Section warnings(*cursor);
     if (const auto table = warnings.find("table"))
     {
       profile.warnings = readTable(*table, profile);

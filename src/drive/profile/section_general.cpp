@@ -2,9 +2,11 @@
 // Copyright (c) 2026 the inverter_bus authors
 // Sections drive, title, manuals, protocol, numbering, stations, serial, limits, spans, frequency, timing, exceptions.
 
-#include "drive/profile/profile_builder.h"
+#include <set>
+#include <type_traits>
 
-#include "drive/profile/numbers.h"
+#include "config/numerals.h"
+#include "drive/profile/profile_builder.h"
 #include "util/text.h"
 
 namespace inverter_bus
@@ -18,36 +20,35 @@ constexpr std::int64_t MAX_COMPOWAY_STATION = 99;
 constexpr double MAX_FREQUENCY = 10000.0;
 constexpr double MAX_DELAY = 60.0;
 
-std::set<unsigned> readUnsignedSet(const YamlCursor& cursor, std::int64_t lowest, std::int64_t highest)
+/// The values that \p read reads from the elements of a list: at least one, and none twice.
+template <typename Read>
+auto readSet(const Cursor& cursor, Read read)
 {
-  std::set<unsigned> result;
-  for (const YamlCursor& entry : cursor.list())
+  std::set<typename std::invoke_result_t<Read, const Cursor&>::value_type> result;
+  for (const Cursor& entry : cursor.list())
   {
-    const auto value = entry.integer(lowest, highest);
-    if (value && !result.insert(static_cast<unsigned>(*value)).second)
+    const auto value = read(entry);
+    if (value && !result.insert(*value).second)
     {
-      entry.complain("stands twice in the list");
+      entry.complain("is in the list twice");
     }
   }
-  if (cursor.isList() && cursor.value().items.empty())
+  if (cursor.isList() && cursor.value().list.empty())
   {
     cursor.complain("is an empty list: at least one value is needed");
   }
   return result;
 }
 
-std::set<std::string> readParities(const YamlCursor& cursor)
+std::set<unsigned> readUnsignedSet(const Cursor& cursor, std::int64_t lowest, std::int64_t highest)
 {
-  std::set<std::string> result;
-  for (const YamlCursor& entry : cursor.list())
-  {
-    const auto value = entry.choice({ "none", "even", "odd" });
-    if (value && !result.insert(*value).second)
-    {
-      entry.complain("stands twice in the list");
-    }
-  }
-  return result;
+  const auto values = readSet(cursor, [&](const Cursor& entry) { return entry.integer(lowest, highest); });
+  return { values.begin(), values.end() };
+}
+
+std::set<std::string> readParities(const Cursor& cursor)
+{
+  return readSet(cursor, [](const Cursor& entry) { return entry.choice({ "none", "even", "odd" }); });
 }
 
 bool isCompoway(const Profile& profile)
@@ -56,11 +57,11 @@ bool isCompoway(const Profile& profile)
 }
 
 /// "8E1": data bits, parity, stop bits.
-void readCharacters(const YamlCursor& cursor, Profile& profile)
+void readCharacters(const Cursor& cursor, Profile& profile)
 {
   static const std::map<char, std::string> PARITIES = { { 'N', "none" }, { 'E', "even" }, { 'O', "odd" } };
   const unsigned least = isCompoway(profile) ? 7 : 8;
-  for (const YamlCursor& entry : cursor.list())
+  for (const Cursor& entry : cursor.list())
   {
     const std::string text = entry.text().value_or("");
     const bool form = text.size() == 3 && PARITIES.count(text[1]) != 0 && (text[2] == '1' || text[2] == '2');
@@ -76,13 +77,13 @@ void readCharacters(const YamlCursor& cursor, Profile& profile)
     profile.parities.insert(PARITIES.at(text[1]));
     profile.stop_bits.insert(static_cast<unsigned>(text[2] - '0'));
   }
-  if (cursor.isList() && cursor.value().items.empty())
+  if (cursor.isList() && cursor.value().list.empty())
   {
     cursor.complain("is an empty list: at least one value is needed");
   }
 }
 
-void readServices(const YamlCursor& cursor, Profile& profile)
+void readServices(const Cursor& cursor, Profile& profile)
 {
   const std::set<unsigned> known = { 0x0101, 0x0102, 0x0503, 0x0601, 0x0801, 0x3005 };
   profile.functions = readUnsignedSet(cursor, 1, 0xFFFF);
@@ -96,7 +97,7 @@ void readServices(const YamlCursor& cursor, Profile& profile)
   }
 }
 
-void readFunctions(const YamlCursor& cursor, Profile& profile)
+void readFunctions(const Cursor& cursor, Profile& profile)
 {
   const std::set<unsigned> known = { 0x01, 0x03, 0x05, 0x06, 0x08, 0x0F, 0x10, 0x17 };
   profile.functions = readUnsignedSet(cursor, 1, 0x7F);
@@ -110,14 +111,14 @@ void readFunctions(const YamlCursor& cursor, Profile& profile)
   }
 }
 
-void readSpansSection(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readSpansSection(Section& root, const Numbering& numbering, Profile& profile)
 {
   const auto cursor = root.find("spans");
   if (!cursor)
   {
     return;
   }
-  YamlMap spans(*cursor);
+  Section spans(*cursor);
   if (const auto registers = spans.find("registers"))
   {
     profile.register_spans = readSpans(*registers, numbering, Space::Register);
@@ -129,7 +130,7 @@ void readSpansSection(YamlMap& root, const Numbering& numbering, Profile& profil
   spans.finish();
 }
 
-void readExceptions(YamlMap& root, Profile& profile)
+void readExceptions(Section& root, Profile& profile)
 {
   const auto cursor = root.find("exceptions");
   if (!cursor)
@@ -138,7 +139,7 @@ void readExceptions(YamlMap& root, Profile& profile)
   }
   for (const auto& [key, meaning] : cursor->entries())
   {
-    const auto code = parseInteger(key);
+    const auto code = config::parseInteger(key);
     const auto text = meaning.text();
     const std::int64_t highest = isCompoway(profile) ? 0xFFFF : 0xFF;
     if (!code || *code < 1 || *code > highest)
@@ -152,16 +153,16 @@ void readExceptions(YamlMap& root, Profile& profile)
   }
 }
 
-void readBroadcast(YamlMap& root, Profile& profile)
+void readBroadcast(Section& root, Profile& profile)
 {
   const auto cursor = root.find("broadcast");
   if (!cursor)
   {
     return;
   }
-  YamlMap broadcast(*cursor);
+  Section broadcast(*cursor);
   profile.broadcast_stop = broadcast.flag("stop", false);
-  profile.broadcast_turnaround = broadcast.number("turnaround", 0.0, MAX_DELAY, profile.broadcast_turnaround);
+  profile.broadcast_turnaround = broadcast.number("turnaround", { 0.0, MAX_DELAY }, profile.broadcast_turnaround);
   broadcast.text("source");
   broadcast.finish();
 }
@@ -169,9 +170,9 @@ void readBroadcast(YamlMap& root, Profile& profile)
 
 namespace
 {
-void readStations(const YamlCursor& cursor, Profile& profile)
+void readStations(const Cursor& cursor, Profile& profile)
 {
-  YamlMap stations(cursor);
+  Section stations(cursor);
   // Modbus keeps 0 for the broadcast; CompoWay/F has letters for that.
   const std::int64_t lowest = isCompoway(profile) ? 0 : 1;
   const std::int64_t highest = isCompoway(profile) ? MAX_COMPOWAY_STATION : MAX_MODBUS_STATION;
@@ -186,9 +187,9 @@ void readStations(const YamlCursor& cursor, Profile& profile)
   stations.finish();
 }
 
-void readSerial(const YamlCursor& cursor, Profile& profile)
+void readSerial(const Cursor& cursor, Profile& profile)
 {
-  YamlMap serial(cursor);
+  Section serial(cursor);
   const auto baud_rates = serial.require("baud_rates");
   profile.baud_rates = baud_rates ? readUnsignedSet(*baud_rates, 110, 4000000) : std::set<unsigned>();
   if (const auto characters = serial.find("characters"))
@@ -208,7 +209,7 @@ void readSerial(const YamlCursor& cursor, Profile& profile)
   serial.finish();
 }
 
-void readModbusLimits(YamlMap& limits, Profile& profile)
+void readModbusLimits(Section& limits, Profile& profile)
 {
   if (const auto functions = limits.require("functions"))
   {
@@ -224,7 +225,7 @@ void readModbusLimits(YamlMap& limits, Profile& profile)
   }
 }
 
-void readCompowayLimits(YamlMap& limits, Profile& profile)
+void readCompowayLimits(Section& limits, Profile& profile)
 {
   if (const auto services = limits.require("services"))
   {
@@ -237,7 +238,7 @@ void readCompowayLimits(YamlMap& limits, Profile& profile)
 }
 }  // namespace
 
-Numbering readNumbering(YamlMap& root)
+Numbering readNumbering(Section& root)
 {
   Numbering result;
   const auto protocol = root.find("protocol");
@@ -247,7 +248,7 @@ Numbering readNumbering(YamlMap& root)
   {
     return result;
   }
-  YamlMap numbering(*cursor);
+  Section numbering(*cursor);
   if (const auto offset = numbering.require("register_offset"))
   {
     result.register_offset = offset->integer(-0xFFFF, 0).value_or(0);
@@ -259,7 +260,7 @@ Numbering readNumbering(YamlMap& root)
   return result;
 }
 
-void readIdentity(YamlMap& root, Profile& profile)
+void readIdentity(Section& root, Profile& profile)
 {
   if (const auto cursor = root.require("drive"))
   {
@@ -278,7 +279,7 @@ void readIdentity(YamlMap& root, Profile& profile)
   }
 }
 
-void readLine(YamlMap& root, Profile& profile)
+void readLine(Section& root, Profile& profile)
 {
   if (const auto cursor = root.require("protocol"))
   {
@@ -294,11 +295,11 @@ void readLine(YamlMap& root, Profile& profile)
   }
 }
 
-void readLimits(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readLimits(Section& root, const Numbering& numbering, Profile& profile)
 {
   if (const auto cursor = root.require("limits"))
   {
-    YamlMap limits(*cursor);
+    Section limits(*cursor);
     isCompoway(profile) ? readCompowayLimits(limits, profile) : readModbusLimits(limits, profile);
     limits.text("source");
     limits.finish();
@@ -308,28 +309,28 @@ void readLimits(YamlMap& root, const Numbering& numbering, Profile& profile)
   readBroadcast(root, profile);
 }
 
-void readTiming(YamlMap& root, Profile& profile)
+void readTiming(Section& root, Profile& profile)
 {
   if (const auto cursor = root.require("frequency"))
   {
-    YamlMap frequency(*cursor);
+    Section frequency(*cursor);
     if (const auto maximum = frequency.require("maximum"))
     {
-      profile.maximum_frequency = maximum->number(0.01, MAX_FREQUENCY).value_or(MAX_FREQUENCY);
+      profile.maximum_frequency = maximum->number({ 0.01, MAX_FREQUENCY }).value_or(MAX_FREQUENCY);
     }
     frequency.text("source");
     frequency.finish();
   }
   if (const auto cursor = root.find("timing"))
   {
-    YamlMap timing(*cursor);
-    profile.reply_delay = timing.number("reply_delay", 0.0, MAX_DELAY, 0.0);
+    Section timing(*cursor);
+    profile.reply_delay = timing.number("reply_delay", { 0.0, MAX_DELAY }, 0.0);
     if (timing.has("response_timeout"))
     {
-      profile.response_timeout = timing.number("response_timeout", 0.001, MAX_DELAY, 0.1);
+      profile.response_timeout = timing.number("response_timeout", { 0.001, MAX_DELAY }, 0.1);
     }
-    profile.quiet_before = timing.number("quiet_before", 0.0, 1.0, 0.0);
-    profile.deaf_after_reset = timing.number("deaf_after_reset", 0.0, MAX_DELAY, 0.0);
+    profile.quiet_before = timing.number("quiet_before", { 0.0, 1.0 }, 0.0);
+    profile.deaf_after_reset = timing.number("deaf_after_reset", { 0.0, MAX_DELAY }, 0.0);
     profile.reply_delay_parameter = timing.name("reply_delay_parameter");
     timing.text("source");
     timing.finish();

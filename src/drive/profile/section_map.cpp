@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "drive/profile/numbers.h"
+#include "config/numerals.h"
 #include "drive/profile/profile_builder.h"
 #include "util/text.h"
 
@@ -16,10 +16,10 @@ namespace
 {
 constexpr std::int64_t MOST_REGISTERS = 125;  // of one read: Modbus V1.1b3, 6.3
 
-void readWord(const std::string& key, const YamlCursor& cursor, RegisterMap& map)
+void readWord(const std::string& key, const Cursor& cursor, RegisterMap& map)
 {
-  const auto number = parseInteger(key);
-  YamlMap entry(cursor);
+  const auto number = config::parseInteger(key);
+  Section entry(cursor);
   MirroredCoils word;
   if (const auto coil = entry.require("coils"))
   {
@@ -37,7 +37,7 @@ void readWord(const std::string& key, const YamlCursor& cursor, RegisterMap& map
 }
 
 /// One value of the table, for the parameter at register \p number.
-void addEntry(unsigned number, const YamlCursor& cursor, const Profile& profile, RegisterMap& map)
+void addEntry(unsigned number, const Cursor& cursor, const Profile& profile, RegisterMap& map)
 {
   const auto raw = cursor.integer(0, 0xFFFF);
   const auto found = std::find_if(profile.parameters.begin(), profile.parameters.end(), [number](const auto& entry) {
@@ -53,7 +53,7 @@ void addEntry(unsigned number, const YamlCursor& cursor, const Profile& profile,
 }
 
 /// The first parameter of a row of registers, and the value of each of them; or one parameter and its value.
-void readRow(const std::string& name, const YamlCursor& cursor, const Profile& profile, RegisterMap& map)
+void readRow(const std::string& name, const Cursor& cursor, const Profile& profile, RegisterMap& map)
 {
   const auto first = profile.parameters.find(name);
   if (first == profile.parameters.end())
@@ -62,28 +62,28 @@ void readRow(const std::string& name, const YamlCursor& cursor, const Profile& p
     return;
   }
   unsigned number = first->second.item.number;
-  for (const YamlCursor& value : cursor.isList() ? cursor.list() : std::vector<YamlCursor>{ cursor })
+  for (const Cursor& value : cursor.isList() ? cursor.list() : std::vector<Cursor>{ cursor })
   {
     addEntry(number++, value, profile, map);
   }
 }
 }  // namespace
 
-void readMap(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readMap(Section& root, const Numbering& numbering, Profile& profile)
 {
   const auto cursor = numbering.variables ? std::nullopt : root.find("map");
   if (!cursor)
   {
     return;
   }
-  YamlMap section(*cursor);
+  Section section(*cursor);
   RegisterMap map;
   if (const auto read_cursor = section.require("read"))
   {
     ItemRules rules;
     rules.coil = false;
     rules.scale = false;
-    YamlMap read(*read_cursor);
+    Section read(*read_cursor);
     map.read = readItem(read, numbering, rules).value_or(Item());
     map.read.size = static_cast<unsigned>(read.integer("count", 1, MOST_REGISTERS, 1));
     read.finish();

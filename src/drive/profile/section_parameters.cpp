@@ -4,6 +4,7 @@
 
 #include "drive/profile/numbers.h"
 #include "drive/profile/profile_builder.h"
+#include "util/printable.h"
 #include "util/text.h"
 
 namespace inverter_bus
@@ -20,16 +21,16 @@ std::pair<double, double> registerRange(const Item& item)
   return { scaleCounts(lowest, item.resolution), scaleCounts(lowest + counts - 1.0, item.resolution) };
 }
 
-void readRange(const YamlCursor& cursor, Parameter& parameter)
+void readRange(const Cursor& cursor, Parameter& parameter)
 {
-  const std::vector<YamlCursor> ends = cursor.list();
+  const std::vector<Cursor> ends = cursor.list();
   if (ends.size() != 2)
   {
     cursor.complain("allowed: [lowest, highest]");
     return;
   }
-  const auto lowest = ends[0].number(-5e9, 5e9);
-  const auto highest = ends[1].number(-5e9, 5e9);
+  const auto lowest = ends[0].number({ -5e9, 5e9 });
+  const auto highest = ends[1].number({ -5e9, 5e9 });
   if (!lowest || !highest)
   {
     return;
@@ -51,12 +52,12 @@ void readRange(const YamlCursor& cursor, Parameter& parameter)
   }
 }
 
-void readParameter(const std::string& name, const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readParameter(const std::string& name, const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
   ItemRules rules;
   rules.coil = false;
   Parameter parameter;
-  YamlMap map(cursor);
+  Section map(cursor);
   const auto item = readItem(map, numbering, rules);
   parameter.name = name;
   parameter.title = map.text("title");
@@ -95,22 +96,21 @@ void readParameter(const std::string& name, const YamlCursor& cursor, const Numb
   profile.parameters[name] = parameter;
 }
 
-void checkName(const std::string& name, const YamlCursor& cursor)
+void checkName(const std::string& name, const Cursor& cursor)
 {
-  YamlValue spelled;
-  spelled.kind = YamlValue::Kind::Scalar;
-  spelled.text = name;
-  spelled.scalar = config::readScalar(name, "!");
-  spelled.where = cursor.value().where;
   const bool number = name.size() > 1 && name[0] == '0' && (name[1] == 'x' || name[1] == 'X');
-  if (YamlCursor(spelled, cursor.path(), cursor.problems()).name() && number)
+  if (!config::isName(name))
+  {
+    cursor.complain("the name '" + util::printable(name) + "': allowed: " + config::NAME_FORM);
+  }
+  else if (number)
   {
     cursor.complain("names that begin with 0x are register numbers: allowed: any other name");
   }
 }
 }  // namespace
 
-void readParameters(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readParameters(Section& root, const Numbering& numbering, Profile& profile)
 {
   if (const auto cursor = root.find("parameters"))
   {

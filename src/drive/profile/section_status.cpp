@@ -67,7 +67,7 @@ ItemRules rulesOf(FieldKind kind)
   return rules;
 }
 
-void checkMeaning(FieldKind kind, const std::string& field, const Item& item, const YamlCursor& cursor)
+void checkMeaning(FieldKind kind, const std::string& field, const Item& item, const Cursor& cursor)
 {
   if (kind == FieldKind::Direction && item.values.empty())
   {
@@ -90,7 +90,7 @@ void checkMeaning(FieldKind kind, const std::string& field, const Item& item, co
   const auto means_no_trip = [](const auto& entry) { return entry.second == 0; };
   if (field == "faulted" && !item.values.empty() && std::none_of(item.values.begin(), item.values.end(), means_no_trip))
   {
-    cursor.complain("values name none that means 0, no trip: a value that stands in no table counts as a trip");
+    cursor.complain("no value means 0 (no trip), and a value that is in no table counts as a trip");
   }
   if (field == "fault_code" && largestRaw(item) > 0xFFFF)
   {
@@ -98,7 +98,7 @@ void checkMeaning(FieldKind kind, const std::string& field, const Item& item, co
   }
 }
 
-void readField(const std::string& field, const YamlCursor& cursor, const Numbering& numbering, Profile& profile)
+void readField(const std::string& field, const Cursor& cursor, const Numbering& numbering, Profile& profile)
 {
   const FieldKind kind = fieldKind(field);
   if (kind == FieldKind::Unknown)
@@ -106,7 +106,7 @@ void readField(const std::string& field, const YamlCursor& cursor, const Numberi
     cursor.complain("unknown key: allowed: " + allowedFields());
     return;
   }
-  YamlMap map(cursor);
+  Section map(cursor);
   const auto item = readItem(map, numbering, rulesOf(kind));
   const bool slow = map.flag("slow", false);
   const auto when = map.find("when");
@@ -126,7 +126,7 @@ void readField(const std::string& field, const YamlCursor& cursor, const Numberi
     return;
   }
   checkMeaning(kind, field, *item, cursor);
-  if (leftOutForUnit(field, *item, cursor))
+  if (leftOutForUnit(field, *item, cursor, profile))
   {
     return;
   }
@@ -149,7 +149,7 @@ void readField(const std::string& field, const YamlCursor& cursor, const Numberi
 }
 }  // namespace
 
-void readKeepAlive(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readKeepAlive(Section& root, const Numbering& numbering, Profile& profile)
 {
   const auto cursor = root.find("keep_alive");
   if (!cursor)
@@ -158,16 +158,16 @@ void readKeepAlive(YamlMap& root, const Numbering& numbering, Profile& profile)
   }
   ItemRules rules;
   rules.scale = false;
-  YamlMap map(*cursor);
+  Section map(*cursor);
   profile.keep_alive = readItem(map, numbering, rules);
   map.finish();
   if (profile.keep_alive && !profile.keep_alive->unconfirmed.empty())
   {
-    cursor->complain("must be confirmed: something must be read from a drive that tells nothing else");
+    cursor->complain("must be confirmed: something must be read from a drive that reports nothing else");
   }
 }
 
-void readStatus(YamlMap& root, const Numbering& numbering, Profile& profile)
+void readStatus(Section& root, const Numbering& numbering, Profile& profile)
 {
   readKeepAlive(root, numbering, profile);
   if (const auto cursor = root.require("status"))

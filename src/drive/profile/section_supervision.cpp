@@ -10,10 +10,10 @@ namespace drive
 {
 namespace
 {
-std::set<std::uint32_t> readCodes(const YamlCursor& cursor)
+std::set<std::uint32_t> readCodes(const Cursor& cursor)
 {
   std::set<std::uint32_t> codes;
-  for (const YamlCursor& entry : cursor.list())
+  for (const Cursor& entry : cursor.list())
   {
     if (const auto code = entry.integer(0, 0xFFFF))
     {
@@ -23,7 +23,7 @@ std::set<std::uint32_t> readCodes(const YamlCursor& cursor)
   return codes;
 }
 
-std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key, bool compoway = false)
+std::vector<Expectation> readExpectations(Section& root, const std::string& key, bool compoway = false)
 {
   std::vector<Expectation> expectations;
   const auto cursor = root.find(key);
@@ -31,9 +31,9 @@ std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key,
   {
     return expectations;
   }
-  for (const YamlCursor& entry : cursor->list())
+  for (const Cursor& entry : cursor->list())
   {
-    YamlMap map(entry);
+    Section map(entry);
     Expectation expectation;
     const auto model = key == "identity" && compoway ? map.find("model") : std::nullopt;
     if (model && model->text().value_or("").empty())
@@ -50,7 +50,7 @@ std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key,
     expectation.when_commanded = when && when->choice({ "commanded" });
     map.text("source");
     map.finish();
-    if (accept && accept->isList() && accept->value().items.empty())
+    if (accept && accept->isList() && accept->value().list.empty())
     {
       accept->complain("is an empty list: at least one value is needed");
     }
@@ -60,13 +60,13 @@ std::vector<Expectation> readExpectations(YamlMap& root, const std::string& key,
 }
 }  // namespace
 
-void readSupervision(YamlMap& root, Profile& profile)
+void readSupervision(Section& root, Profile& profile)
 {
   profile.identity = readExpectations(root, "identity", profile.protocol == "compoway_f");
   profile.command_source = readExpectations(root, "command_source");
   profile.self_restart = readExpectations(root, "self_restart");
   CommunicationLoss& loss = profile.communication_loss;
-  loss.assumed_timeout = root.number("drive_timeout", 0.0, 3600.0, 0.0);
+  loss.assumed_timeout = root.number("drive_timeout", { 0.0, 3600.0 }, 0.0);
   if (const auto action = root.find("drive_loss_action"))
   {
     loss.assumed_action = action->choice({ "runs_on", "decelerate", "coast", "trip" }).value_or("");
@@ -76,7 +76,7 @@ void readSupervision(YamlMap& root, Profile& profile)
   {
     return;
   }
-  YamlMap map(*cursor);
+  Section map(*cursor);
   loss.timeout_parameter = map.name("timeout_parameter");
   loss.action_parameter = map.name("action_parameter");
   if (const auto runs_on = map.find("runs_on"))

@@ -11,7 +11,7 @@ namespace inverter_bus
 {
 namespace drive
 {
-/// The unit that the messages state for a quantity of the status or of the trip memory; empty: it is no quantity.
+/// The unit that the messages state for a quantity of the status or of the trip memory; empty: it is not a quantity.
 std::string unitOfField(const std::string& field);
 
 /// What is wrong with the unit of \p item in \p field, and what is allowed; empty: nothing. An item without a unit has the

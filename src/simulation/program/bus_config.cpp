@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <regex>
 #include <set>
+#include <vector>
 
 #include "config/yaml.h"
 #include "simulation/program/bus_config_drives.h"
@@ -22,16 +24,12 @@ namespace
 /// A drive that is played by what a profile says of it (key `model`, or a path as `drive`).
 const char* const BY_PROFILE = "profile";
 
-LineSettings readLine(const Value& root)
+LineSettings readLine(const Section& root)
 {
   LineSettings line;
-  const Value* protocol = find(&root, "protocol");
-  const std::string name = protocol == nullptr ? nameOf(Protocol::ModbusRtu) : toText(protocol, "protocol");
-  if (name != nameOf(Protocol::ModbusRtu) && name != nameOf(Protocol::CompowayF))
-  {
-    refuse("protocol", protocol, "modbus_rtu, compoway_f");
-  }
-  if (name == nameOf(Protocol::CompowayF))
+  const std::string protocol = root.choice("protocol", { nameOf(Protocol::ModbusRtu), nameOf(Protocol::CompowayF) },
+                                           nameOf(Protocol::ModbusRtu));
+  if (protocol == nameOf(Protocol::CompowayF))
   {
     line.protocol = Protocol::CompowayF;
     line.data_bits = 7;
@@ -40,84 +38,68 @@ LineSettings readLine(const Value& root)
   }
   for (const char* key : { "baud_rate", "parity", "data_bits", "stop_bits" })
   {
-    if (const Value* value = find(&root, key))
+    if (const auto value = root.find(key))
     {
-      readLineKey(key, *value, key, line);
+      readLineKey(key, *value, line);
     }
   }
   return line;
 }
 
-/// A key of the entry, else of the defaults.
-const Value* pick(const Value* entry, const Value* defaults, const char* key)
-{
-  const Value* own = find(entry, key);
-  return own != nullptr ? own : find(defaults, key);
-}
-
-DriveConfig readDrive(const Value* entry, const Value* defaults, const std::string& place)
+/// \p entry holds the defaults too.
+DriveConfig readDrive(const Section& entry)
 {
   DriveConfig drive;
-  drive.model = toText(pick(entry, defaults, "drive"), place + "/drive");
+  const auto model = entry.require("drive", "a text");
+  drive.model = model->filledText().value_or("");
   if (drive.model[0] == '/')
   {
     drive.model = BY_PROFILE;
   }
-  if (const Value* current = pick(entry, defaults, "rated_current"))
-  {
-    drive.options.rated_current = toNumber(current, place + "/rated_current", 0.01, 10000.0);
-  }
-  if (const Value* voltage = pick(entry, defaults, "rated_voltage"))
-  {
-    drive.options.rated_voltage = toNumber(voltage, place + "/rated_voltage", 1.0, 1000.0);
-  }
+  drive.options.rated_current = entry.number("rated_current", { 0.01, 10000.0 }, drive.options.rated_current);
+  drive.options.rated_voltage = entry.number("rated_voltage", { 1.0, 1000.0 }, drive.options.rated_voltage);
   return drive;
 }
 
-void readList(const Value& list, const Value* defaults, BusConfig& config)
+void readList(const Cursor& list, const Value& defaults, BusConfig& config)
 {
-  for (std::size_t i = 0; i < list.list.size(); ++i)
+  for (const Cursor& listed : list.list())
   {
-    const std::string place = "scan_list[" + std::to_string(i) + "]";
-    const Value& entry = toMap(&list.list[i], place, "a map with name, node and drive");
-    DriveConfig drive = readDrive(&entry, defaults, place);
-    drive.options.name = toText(find(&entry, "name"), place + "/name");
-    drive.options.station = toIntegerBetween(find(&entry, "node"), place + "/node", 0, 255);
+    Value whole = listed.value();
+    whole.inherit(defaults);
+    const Section entry(Cursor(whole, listed.path(), listed.complaints()));
+    DriveConfig drive = readDrive(entry);
+    drive.options.name = entry.require("name", "a text")->filledText().value_or("");
+    drive.options.station =
+        static_cast<int>(entry.require("node", "an integer from 0 to 255")->integer(0, 255).value_or(0));
     config.drives.push_back(drive);
   }
 }
 
-std::uint32_t maskOf(const Value& value)
+std::uint32_t maskOf(const Cursor& mask)
 {
-  const char* const allowed = "a list of inverters, or a 32-bit mask such as 6, \"0x80000002\" or \"#80000002\"";
+  static const std::regex HEXADECIMAL("(0[xX]|#)([0-9a-fA-F]{1,8})");
+  const Value& value = mask.value();
+  std::smatch match;
   if (value.type == Value::Type::Integer)
   {
     return static_cast<std::uint32_t>(value.integer);
   }
-  if (value.type != Value::Type::Text)
+  if (value.type != Value::Type::Text || !std::regex_match(value.text, match, HEXADECIMAL))
   {
-    refuse("scan_list", &value, allowed);
+    mask.reject("a list of inverters, or a 32-bit mask such as 6, \"0x80000002\" or \"#80000002\"");
   }
-  const bool number_sign = value.text.compare(0, 1, "#") == 0;
-  const std::string digits = value.text.substr(number_sign ? 1 : std::min<std::size_t>(2, value.text.size()));
-  const bool prefix = number_sign || value.text.compare(0, 2, "0x") == 0 || value.text.compare(0, 2, "0X") == 0;
-  const bool good = prefix && !digits.empty() && digits.size() <= 8 &&
-                    digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
-  if (!good)
-  {
-    refuse("scan_list", &value, allowed);
-  }
-  return static_cast<std::uint32_t>(std::strtoul(digits.c_str(), nullptr, 16));
+  return static_cast<std::uint32_t>(std::strtoul(match[2].str().c_str(), nullptr, 16));
 }
 
-void readMask(const Value& value, const Value* defaults, BusConfig& config)
+void readMask(const Cursor& value, const Value& defaults, BusConfig& config)
 {
   const std::uint32_t mask = maskOf(value);
   for (int station = 1; station < 32; ++station)
   {
     if (((mask >> static_cast<unsigned int>(station)) & 1U) != 0U)
     {
-      DriveConfig drive = readDrive(nullptr, defaults, "defaults");
+      DriveConfig drive = readDrive(Section(Cursor(defaults, "defaults", value.complaints())));
       drive.options.name = "inverter_" + std::to_string(station);
       drive.options.station = station;
       config.drives.push_back(drive);
@@ -125,21 +107,16 @@ void readMask(const Value& value, const Value* defaults, BusConfig& config)
   }
 }
 
-void readScanList(const Value& root, BusConfig& config)
+void readScanList(const Section& root, BusConfig& config)
 {
-  const Value* list = find(&root, "scan_list");
-  const Value* defaults = find(&root, "defaults");
-  if (list != nullptr && list->type == Value::Type::List)
-  {
-    readList(*list, defaults, config);
-  }
-  else if (list != nullptr)
-  {
-    readMask(*list, defaults, config);
-  }
+  const char* const allowed = "a list of inverters, or a bit mask with at least one of the bits 1-31";
+  const auto list = root.require("scan_list", allowed);
+  const auto given = root.find("defaults");
+  const Value defaults = given ? given->value() : Value::ofMap({});
+  list->isList() ? readList(*list, defaults, config) : readMask(*list, defaults, config);
   if (config.drives.empty())
   {
-    refuse("scan_list", list, "a list of inverters, or a bit mask with at least one of the bits 1-31");
+    list->reject(allowed);
   }
 }
 
@@ -179,7 +156,7 @@ void checkModel(const DriveConfig& drive, Protocol protocol)
       allowed += model + ", ";
     }
     throw ConfigError("drive: " + util::printable(drive.model) + " of " + name + " can't be simulated (allowed: " +
-                      allowed + "or one of them, or profile, as simulation/" + name + "/model)");
+                      allowed + "or one of them, or profile, as simulation." + name + ".model)");
   }
   if (protocolOf(drive) != protocol)
   {
@@ -211,13 +188,11 @@ void SerialOptions::apply(LineSettings& line) const
 
 BusConfig busConfigFromParameters(const Value& parameters, const SerialOptions& drives_serial)
 {
-  if (parameters.type != Value::Type::Map)
-  {
-    refuse("scan list", &parameters, "a map with scan_list, see the README");
-  }
+  Refusals refusals;
+  const Section root(Cursor(parameters, "", refusals));
   BusConfig config;
-  config.line = readLine(parameters);
-  readScanList(parameters, config);
+  config.line = readLine(root);
+  readScanList(root, config);
   checkUnique(config);
   LineSettings of_drives = config.line;
   drives_serial.apply(of_drives);
@@ -225,23 +200,19 @@ BusConfig busConfigFromParameters(const Value& parameters, const SerialOptions& 
   {
     drive.options.line = of_drives;
   }
-  readSimulation(find(&parameters, "simulation"), of_drives, config);
+  if (const auto simulation = root.find("simulation"))
+  {
+    readSimulation(*simulation, of_drives, config);
+  }
   finish(config);
   return config;
 }
 
 BusConfig busConfigFromText(const std::string& yaml)
 {
-  std::vector<config::YamlProblem> problems;
-  const auto tree = config::readYaml(yaml, problems);
-  const Value parameters = tree ? config::toParameters(*tree, problems) : Value();
-  if (!problems.empty())
-  {
-    const config::YamlProblem& first = problems.front();
-    throw ConfigError(util::printable((first.line > 0 ? "line " + std::to_string(first.line) + ": " : "") +
-                                          (first.path.empty() ? "" : first.path + ": ") + first.what,
-                                      1000));
-  }
+  Refusals refusals;
+  Value parameters = config::readYaml(yaml, "", config::Purpose::Parameters, refusals).value_or(Value());
+  parameters.moveTo("");
   return busConfigFromParameters(parameters);
 }
 }  // namespace simulation

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <vector>
 
 #include "simulation/program/config_values.h"
-#include "util/printable.h"
 
 namespace inverter_bus
 {
@@ -18,56 +18,53 @@ namespace
 {
 constexpr int LAST_STATION = 255;
 
-void readParameters(const Value& value, const std::string& place, DriveOptions& options)
+void readParameters(const Cursor& cursor, DriveOptions& options)
 {
-  for (const auto& entry : toMap(&value, place, "a map of parameter codes to values").map)
+  for (const auto& [code, value] : cursor.entries())
   {
-    options.parameters[entry.first] = toNumber(&entry.second, place + "/" + entry.first, 0.0, 4294967295.0);
+    options.parameters[code] = value.number({ 0.0, 4294967295.0 }).value_or(0.0);
   }
 }
 
-void readOperationCodes(const Value& value, const std::string& place, DriveOptions& options)
+void readOperationCodes(const Cursor& cursor, DriveOptions& options)
 {
-  for (const auto& entry : toMap(&value, place, "a map of operations to codes of four hexadecimal digits").map)
+  for (const auto& [operation, code] : cursor.entries())
   {
-    options.operation_codes[entry.first] = toText(&entry.second, place + "/" + entry.first);
+    options.operation_codes[operation] = code.filledText().value_or("");
   }
 }
 
-using Reading = std::function<void(const Value& value, const std::string& place, DriveConfig& drive)>;
+using Reading = std::function<void(const Cursor& value, DriveConfig& drive)>;
 
 Reading numberInto(double DriveOptions::*member, double maximum)
 {
-  return [member, maximum](const Value& value, const std::string& place, DriveConfig& drive) {
-    drive.options.*member = toNumber(&value, place, 0.0, maximum);
+  return [member, maximum](const Cursor& value, DriveConfig& drive) {
+    drive.options.*member = value.number({ 0.0, maximum }).value_or(0.0);
   };
 }
 
 Reading flagInto(bool DriveOptions::*member)
 {
-  return [member](const Value& value, const std::string& place, DriveConfig& drive) {
-    drive.options.*member = toFlag(&value, place);
-  };
+  return [member](const Cursor& value, DriveConfig& drive) { drive.options.*member = value.flag().value_or(false); };
 }
 
 const std::map<std::string, Reading>& readings()
 {
   static const std::map<std::string, Reading> READINGS = {
-    { "model",
-      [](const Value& value, const std::string& place, DriveConfig& drive) { drive.model = toText(&value, place); } },
-    { "station", [](const Value& value, const std::string& place,
-                    DriveConfig& drive) { drive.options.station = toIntegerBetween(&value, place, 0, LAST_STATION); } },
-    { "parameters", [](const Value& value, const std::string& place,
-                       DriveConfig& drive) { readParameters(value, place, drive.options); } },
-    { "operation_codes", [](const Value& value, const std::string& place,
-                            DriveConfig& drive) { readOperationCodes(value, place, drive.options); } },
+    { "model", [](const Cursor& value, DriveConfig& drive) { drive.model = value.filledText().value_or(""); } },
+    { "station",
+      [](const Cursor& value, DriveConfig& drive) {
+        drive.options.station = static_cast<int>(value.integer(0, LAST_STATION).value_or(0));
+      } },
+    { "parameters", [](const Cursor& value, DriveConfig& drive) { readParameters(value, drive.options); } },
+    { "operation_codes", [](const Cursor& value, DriveConfig& drive) { readOperationCodes(value, drive.options); } },
     { "reverse_word",
-      [](const Value& value, const std::string& place, DriveConfig& drive) {
-        drive.options.reverse_word = toInteger(&value, place, { 2, 3 });
+      [](const Cursor& value, DriveConfig& drive) {
+        drive.options.reverse_word = static_cast<int>(value.integerOf({ 2, 3 }).value_or(0));
       } },
     { "monitor_base",
-      [](const Value& value, const std::string& place, DriveConfig& drive) {
-        drive.options.monitor_base = toIntegerBetween(&value, place, 0, 0xFFFF);
+      [](const Cursor& value, DriveConfig& drive) {
+        drive.options.monitor_base = static_cast<int>(value.integer(0, 0xFFFF).value_or(0));
       } },
     { "turnaround", numberInto(&DriveOptions::turnaround, 10.0) },
     { "start_up_time", numberInto(&DriveOptions::start_up_time, 60.0) },
@@ -83,28 +80,18 @@ const std::map<std::string, Reading>& readings()
   return READINGS;
 }
 
-void readDetail(const std::string& key, const Value& value, const std::string& place, DriveConfig& drive)
+std::vector<std::string> detailKeys()
 {
-  const auto reading = readings().find(key);
-  if (reading != readings().end())
-  {
-    reading->second(value, place, drive);
-    return;
-  }
-  if (readLineKey(key, value, place, drive.options.line))
-  {
-    return;
-  }
-  std::string allowed = "baud_rate, parity, data_bits, stop_bits";
+  std::vector<std::string> keys{ "baud_rate", "parity", "data_bits", "stop_bits" };
   for (const auto& known : readings())
   {
-    allowed += ", " + known.first;
+    keys.push_back(known.first);
   }
-  throw ConfigError(util::printable(place, 500) + ": unknown key (allowed: " + allowed + ")");
+  return keys;
 }
 
 /// The drive of that name; a new one, which the scan list doesn't know, where the map says what it is and where.
-DriveConfig& driveFor(const std::string& name, const Value& details, const LineSettings& line, BusConfig& config)
+DriveConfig& driveFor(const std::string& name, const Section& details, const LineSettings& line, BusConfig& config)
 {
   const auto known = std::find_if(config.drives.begin(), config.drives.end(),
                                   [&name](const DriveConfig& one) { return one.options.name == name; });
@@ -112,12 +99,11 @@ DriveConfig& driveFor(const std::string& name, const Value& details, const LineS
   {
     return *known;
   }
-  if (details.map.count("model") == 0 || details.map.count("station") == 0)
+  if (!details.has("model") || !details.has("station"))
   {
-    throw ConfigError(
-        "simulation/" + util::printable(name) +
-        ": no inverter of the scan list (allowed: their names; or any name, with model and station, for a "
-        "further drive on the line)");
+    details.cursor().complain(
+        "no inverter of the scan list (allowed: their names; or any name, with model and station, "
+        "for a further drive on the line)");
   }
   DriveConfig drive;
   drive.options.name = name;
@@ -127,20 +113,22 @@ DriveConfig& driveFor(const std::string& name, const Value& details, const LineS
 }
 }  // namespace
 
-void readSimulation(const Value* simulation, const LineSettings& line, BusConfig& config)
+void readSimulation(const Cursor& simulation, const LineSettings& line, BusConfig& config)
 {
-  if (simulation == nullptr)
+  for (const auto& [name, details] : simulation.entries())
   {
-    return;
-  }
-  for (const auto& entry : toMap(simulation, "simulation", "a map of inverter names").map)
-  {
-    const std::string place = "simulation/" + entry.first;
-    const Value& details = toMap(&entry.second, place, "a map");
-    DriveConfig& drive = driveFor(entry.first, details, line, config);
-    for (const auto& detail : details.map)
+    const Section section(details);
+    section.allowOnly(detailKeys());
+    DriveConfig& drive = driveFor(name, section, line, config);
+    for (const auto& [key, value] : details.entries())
     {
-      readDetail(detail.first, detail.second, place + "/" + detail.first, drive);
+      const auto reading = readings().find(key);
+      if (reading != readings().end())
+      {
+        reading->second(value, drive);
+        continue;
+      }
+      readLineKey(key, value, drive.options.line);
     }
   }
 }

@@ -4,16 +4,16 @@
 #ifndef INVERTER_BUS_SRC_SIMULATION_BUS_CONFIG_DRIVES_H
 #define INVERTER_BUS_SRC_SIMULATION_BUS_CONFIG_DRIVES_H
 
-#include "inverter_bus/config/value.h"
+#include "config/cursor.h"
 #include "inverter_bus/simulation/bus_config.h"
 
 namespace inverter_bus
 {
 namespace simulation
 {
-/// The map `simulation`: what it says about drives of the scan list, and drives that no scan list knows; null: there
-/// is none. \p line is what a further drive is set to unless it says otherwise. \throws ConfigError
-void readSimulation(const config::Value* simulation, const LineSettings& line, BusConfig& config);
+/// The map `simulation`: what it says about drives of the scan list, and drives that no scan list knows. \p line is what a
+/// further drive is set to unless it says otherwise. \throws ConfigError
+void readSimulation(const config::Cursor& simulation, const LineSettings& line, BusConfig& config);
 }  // namespace simulation
 }  // namespace inverter_bus
 

@@ -3,9 +3,6 @@
 
 #include "simulation/program/config_values.h"
 
-#include <cmath>
-
-#include "config/scalar.h"
 #include "inverter_bus/simulation/bus_config.h"
 #include "util/printable.h"
 #include "util/text.h"
@@ -16,153 +13,58 @@ namespace simulation
 {
 namespace
 {
-std::string describe(const Value* value)
+std::string describe(const Value& value)
 {
-  switch (value == nullptr ? Value::Type::None : value->type)
-  {
-    case Value::Type::Boolean:
-      return value->boolean ? "true" : "false";
-    case Value::Type::Integer:
-      return std::to_string(value->integer);
-    case Value::Type::Number:
-      return config::numberInYaml(value->number);
-    case Value::Type::Text:
-      return util::printable(value->text);
-    case Value::Type::List:
-      return "a list";
-    case Value::Type::Map:
-      return "a map";
-    default:
-      return "nothing";
-  }
-}
-
-bool is(const Value* value, Value::Type type)
-{
-  return value != nullptr && value->type == type;
-}
-
-std::string withHint(const Value* value, const std::string& allowed)
-{
-  const std::string hint = is(value, Value::Type::Text) ? config::hintFor(value->text) : "";
-  return hint.empty() ? allowed : allowed + "; " + hint;
+  return value.isScalar()                  ? util::printable(value.text)
+         : value.type == Value::Type::List ? "a list"
+         : value.type == Value::Type::Map  ? "a map"
+                                           : "nothing";
 }
 }  // namespace
 
-void refuse(const std::string& place, const Value* value, const std::string& allowed)
+void Refusals::complain(const config::Spot& spot, const std::string& what)
 {
-  throw ConfigError(util::printable(place, 500) + ": " + describe(value) + " (allowed: " + allowed + ")");
+  constexpr std::size_t LONGEST = 1000;
+  const std::string place = spot.place.empty() ? "" : spot.place + ": ";
+  throw ConfigError(util::printable(place + (spot.path.empty() ? "" : spot.path + ": ") + what, LONGEST));
 }
 
-const Value* find(const Value* map, const std::string& key)
+void Refusals::refuse(const config::Spot& spot, const Value& value, const std::string& /*problem*/,
+                      const std::string& allowed)
 {
-  if (!is(map, Value::Type::Map))
-  {
-    return nullptr;
-  }
-  const auto found = map->map.find(key);
-  return found == map->map.end() ? nullptr : &found->second;
+  complain(spot, describe(value) + " (allowed: " + allowed + ")");
 }
 
-const Value& toMap(const Value* value, const std::string& place, const std::string& allowed)
+void Refusals::miss(const config::Spot& spot, const std::string& allowed)
 {
-  if (!is(value, Value::Type::Map))
-  {
-    refuse(place, value, allowed);
-  }
-  return *value;
+  refuse(spot, Value(), "", allowed);
 }
 
-double toNumber(const Value* value, const std::string& place, double minimum, double maximum)
+void Refusals::refuseKey(const config::Spot& spot, const config::Entry& /*entry*/,
+                         const std::vector<std::string>& known)
 {
-  double number = std::nan("");
-  if (is(value, Value::Type::Integer))
-  {
-    number = static_cast<double>(value->integer);
-  }
-  else if (is(value, Value::Type::Number))
-  {
-    number = value->number;
-  }
-  else if (is(value, Value::Type::Text))
-  {
-    // As the driver does: 1e2 is a text to YAML, and nobody means one where a number is wanted.
-    number = config::meantNumber(value->text).value_or(number);
-  }
-  if (!(number >= minimum && number <= maximum))
-  {
-    refuse(place, value,
-           withHint(value, "a number, " + config::numberInYaml(minimum) + " to " + config::numberInYaml(maximum)));
-  }
-  return number;
+  complain(spot, "unknown key (allowed: " + util::joined(known) + ")");
 }
 
-int toInteger(const Value* value, const std::string& place, const std::set<int>& allowed)
-{
-  const bool known = is(value, Value::Type::Integer) && value->integer == static_cast<int>(value->integer) &&
-                     allowed.count(static_cast<int>(value->integer)) != 0;
-  if (!known)
-  {
-    refuse(place, value, util::joined(allowed));
-  }
-  return static_cast<int>(value->integer);
-}
-
-int toIntegerBetween(const Value* value, const std::string& place, int minimum, int maximum)
-{
-  if (!is(value, Value::Type::Integer) || value->integer < minimum || value->integer > maximum)
-  {
-    refuse(place, value, withHint(value, "an integer, " + std::to_string(minimum) + " to " + std::to_string(maximum)));
-  }
-  return static_cast<int>(value->integer);
-}
-
-bool toFlag(const Value* value, const std::string& place)
-{
-  if (!is(value, Value::Type::Boolean))
-  {
-    refuse(place, value, "true, false");
-  }
-  return value->boolean;
-}
-
-std::string toText(const Value* value, const std::string& place)
-{
-  if (!is(value, Value::Type::Text) || value->text.empty())
-  {
-    refuse(place, value, "text");
-  }
-  return value->text;
-}
-
-Parity toParity(const Value* value, const std::string& place)
-{
-  const std::string parity = is(value, Value::Type::Text) ? value->text : "";
-  if (parity != "none" && parity != "even" && parity != "odd")
-  {
-    refuse(place, value, "none, even, odd");
-  }
-  return parity == "none" ? Parity::None : (parity == "even" ? Parity::Even : Parity::Odd);
-}
-
-bool readLineKey(const std::string& key, const Value& value, const std::string& place, LineSettings& line)
+bool readLineKey(const std::string& key, const Cursor& value, LineSettings& line)
 {
   if (key == "baud_rate")
   {
     // Whatever a drive or a port may have; which of them a drive really has it says itself.
-    line.baud_rate = toIntegerBetween(&value, place, 300, 1000000);
+    line.baud_rate = static_cast<int>(value.integer(300, 1000000).value_or(0));
   }
   else if (key == "data_bits")
   {
-    line.data_bits = toInteger(&value, place, { 7, 8 });
+    line.data_bits = static_cast<int>(value.integerOf({ 7, 8 }).value_or(0));
   }
   else if (key == "stop_bits")
   {
-    line.stop_bits = toInteger(&value, place, { 1, 2 });
+    line.stop_bits = static_cast<int>(value.integerOf({ 1, 2 }).value_or(0));
   }
   else if (key == "parity")
   {
-    line.parity = toParity(&value, place);
+    const std::string parity = value.choice({ "none", "even", "odd" }).value_or("");
+    line.parity = parity == "even" ? Parity::Even : parity == "odd" ? Parity::Odd : Parity::None;
   }
   else
   {

@@ -4,35 +4,34 @@
 #ifndef INVERTER_BUS_SRC_SIMULATION_CONFIG_VALUES_H
 #define INVERTER_BUS_SRC_SIMULATION_CONFIG_VALUES_H
 
-#include <set>
 #include <string>
+#include <vector>
 
-#include "inverter_bus/config/value.h"
+#include "config/complaints.h"
+#include "config/cursor.h"
 #include "inverter_bus/simulation/line_settings.h"
 
 namespace inverter_bus
 {
 namespace simulation
 {
+using config::Cursor;
+using config::Section;
 using config::Value;
 
-/// \throws ConfigError "place: value (allowed: ...)"
-[[noreturn]] void refuse(const std::string& place, const Value* value, const std::string& allowed);
-
-/// Null where there is no such key, or \p map is none.
-const Value* find(const Value* map, const std::string& key);
-
-// Each throws ConfigError where the value has another type or is not allowed; nullptr: it is missing.
-const Value& toMap(const Value* value, const std::string& place, const std::string& allowed);
-double toNumber(const Value* value, const std::string& place, double minimum, double maximum);
-int toInteger(const Value* value, const std::string& place, const std::set<int>& allowed);
-int toIntegerBetween(const Value* value, const std::string& place, int minimum, int maximum);
-bool toFlag(const Value* value, const std::string& place);
-std::string toText(const Value* value, const std::string& place);
-Parity toParity(const Value* value, const std::string& place);
+/// The first mistake ends the reading: each function throws ConfigError "place: path: value (allowed: ...)".
+class Refusals : public config::Complaints
+{
+public:
+  void complain(const config::Spot& spot, const std::string& what) override;
+  void refuse(const config::Spot& spot, const Value& value, const std::string& problem,
+              const std::string& allowed) override;
+  void miss(const config::Spot& spot, const std::string& allowed) override;
+  void refuseKey(const config::Spot& spot, const config::Entry& entry, const std::vector<std::string>& known) override;
+};
 
 /// Key `baud_rate`, `parity`, `data_bits` or `stop_bits`, into \p line. False for another key. \throws ConfigError
-bool readLineKey(const std::string& key, const Value& value, const std::string& place, LineSettings& line);
+bool readLineKey(const std::string& key, const Cursor& value, LineSettings& line);
 }  // namespace simulation
 }  // namespace inverter_bus
 

@@ -44,7 +44,7 @@ std::vector<std::string> NameLookup::find(TimePoint deadline, std::string& error
   std::unique_lock<std::mutex> lock(lookup->mutex);
   if (!lookup->ended.waitUntil(lock, deadline, [&lookup] { return lookup->over; }))
   {
-    error = "no answer yet to the look-up of its name";
+    error = "its name has not been resolved yet";
     return {};
   }
   pending_ = nullptr;

@@ -25,7 +25,7 @@ namespace wire
 {
 namespace
 {
-/// More would make a line that nobody reads.
+/// More would make a line too long to read.
 constexpr std::size_t MOST_NAMES = 4;
 const char* const DIGITS = "0123456789";
 const char* const USB_NAMES[] = { "ttyUSB", "ttyACM" };
@@ -89,7 +89,7 @@ std::string beside(const std::string& device)
     return ": plug it in, or check its name";
   }
   return ": " + device + " is missing, " + util::joined(first) + more + (names.size() > 1 ? " are" : " is") +
-         " there (a name from /dev/serial/by-id stays)";
+         " there (a name from /dev/serial/by-id does not change)";
 }
 
 std::string whyMissing(const std::string& device)
@@ -134,8 +134,8 @@ std::string whyDenied(const std::string& device)
     return ": only its owner " + userName(status.st_uid) + " may use it; give it a group by a udev rule";
   }
   const std::string group = groupName(status.st_gid);
-  return ": it is for members of the group " + group + "; add the user (sudo adduser " + userName(::geteuid()) + " " +
-         group + ") and log in again";
+  return ": only members of the group " + group + " may use it; add the user (sudo adduser " + userName(::geteuid()) +
+         " " + group + ") and log in again";
 }
 
 std::string advice(const std::string& device, int error)

@@ -9,8 +9,8 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// Why open(2) refused \p device with the error number \p error, and what mends it: "cannot open DEVICE: reason: ...".
-/// Looks at the device file and at what lies beside it.
+/// Why open(2) refused \p device with the error number \p error, and how to correct it: "cannot open DEVICE: reason: ...".
+/// Looks at the device file and at the files beside it.
 std::string openFailure(const std::string& device, int error);
 
 /// Why the open \p device cannot be used as a serial port.

@@ -12,7 +12,7 @@ namespace wire
 {
 namespace
 {
-/// The beginning says what is the matter.
+/// The beginning says what the matter is.
 constexpr std::size_t LONGEST = 200;
 /// Shorter text comes about by chance.
 constexpr std::size_t SHORTEST = 6;

@@ -9,7 +9,7 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// What poll(2) says of a tty or a socket.
+/// The result of poll(2) for a tty or a socket.
 enum class DescriptorState
 {
   Ready,

@@ -73,7 +73,7 @@ public:
 
   /// The next open() renews settings, transmitter and buffers under the lock that is held: a close would let another
   /// process in, and the open after it would move RTS. A pseudo-terminal has neither settings to renew nor RTS: there only
-  /// a close tells the other side.
+  /// a close is noticed at the other side.
   void abandon() override
   {
     if (pseudo_terminal_)
@@ -176,7 +176,7 @@ private:
     return locked_ ? OpenResult::Opened : OpenResult::InUse;
   }
 
-  /// What is open is still what the name stands for: of an adapter that came back it is another device file.
+  /// The open device is still the one with the name: an adapter that came back has another device file.
   bool isTheDevice() const
   {
     struct stat named = {};
@@ -185,7 +185,7 @@ private:
            named.st_ino == open.st_ino;
   }
 
-  /// Only who holds the lock flushes: whoever else is on the port has frames on their way.
+  /// Only the holder of the lock flushes: another user of the port may have frames on their way.
   void giveBack()
   {
     if (!pseudo_terminal_)

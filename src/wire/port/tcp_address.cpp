@@ -31,7 +31,7 @@ bool mayStandInName(char character)
          character == '_';
 }
 
-/// Digits in its last part: no name, but an IPv4 address or what should be one.
+/// Digits in its last part: not a name, but an IPv4 address or meant as one.
 bool looksLikeIpv4(const std::string& host)
 {
   const std::string last = host.substr(host.rfind('.') + 1);
@@ -45,7 +45,7 @@ std::string checkHost(const std::string& host, bool in_brackets)
   if (in_brackets)
   {
     boost::asio::ip::make_address_v6(host, refused);
-    return refused ? "'" + util::printable(host) + "' is no IPv6 address" : "";
+    return refused ? "'" + util::printable(host) + "' is not an IPv6 address" : "";
   }
   if (host.empty())
   {
@@ -53,14 +53,14 @@ std::string checkHost(const std::string& host, bool in_brackets)
   }
   if (!std::all_of(host.begin(), host.end(), mayStandInName) || host.size() > LONGEST_HOST_NAME)
   {
-    return "'" + util::printable(host) + "' is no host name";
+    return "'" + util::printable(host) + "' is not a host name";
   }
   if (looksLikeIpv4(host))
   {
     // The system would take 10.1 and 010.0.0.1 for addresses too, other ones than the user means.
     boost::asio::ip::make_address_v4(host, refused);
   }
-  return refused ? "'" + host + "' is no IPv4 address" : "";
+  return refused ? "'" + host + "' is not an IPv4 address" : "";
 }
 
 std::optional<std::uint16_t> parsePort(const std::string& text)
@@ -121,8 +121,8 @@ std::optional<TcpAddress> parseTcpAddress(const std::string& text, std::uint16_t
   const auto port = parts->rest[0] == ':' ? parsePort(parts->rest.substr(1)) : std::nullopt;
   if (!port)
   {
-    error =
-        "behind the host comes a colon and a port number from 1 to 65535, not '" + util::printable(parts->rest) + "'";
+    error = "the host must be followed by a colon and a port number from 1 to 65535, not '" +
+            util::printable(parts->rest) + "'";
     return std::nullopt;
   }
   return TcpAddress{ parts->host, *port };

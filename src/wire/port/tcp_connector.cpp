@@ -22,7 +22,7 @@ namespace
 using boost::asio::ip::tcp;
 using std::chrono::steady_clock;
 
-/// Longest that an attempt takes: what a host on the same network needs, and a lot more.
+/// The longest time for an attempt: far more than a host on the same network needs.
 constexpr std::chrono::seconds LONGEST_OPENING{ 1 };
 /// Port::open() must return within 50 ms.
 constexpr std::chrono::milliseconds LONGEST_STEP{ 40 };
@@ -187,7 +187,7 @@ boost::system::error_code TcpConnector::outcome(tcp::socket& socket) const
   }
   boost::system::error_code failure;
   const tcp::endpoint there = endpoint(failure);
-  // TCP lets a socket call itself where nobody listens on a port of this host.
+  // TCP lets a socket call itself where no program listens on a port of this host.
   const bool itself = socket.local_endpoint(failure) == there;
   return itself ? boost::asio::error::connection_refused : failure;
 }

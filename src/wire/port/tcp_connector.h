@@ -19,7 +19,7 @@ namespace wire
 /// setsockopt(2); a system that lacks the option does without it.
 void setOption(int socket, int level, int option, int value);
 
-/// What has gone wrong with \p socket (SO_ERROR), 0: nothing. Asking clears it.
+/// The error of \p socket (SO_ERROR), 0: none. Asking clears it.
 int socketError(int socket);
 
 /// Makes a connection in small steps: looks up the name, then tries one address after the other. A dead network takes

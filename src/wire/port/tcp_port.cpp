@@ -41,7 +41,7 @@ bool hasUnsent(int socket)
 }
 
 /// The peer may hold back the rest of a reply until the first part is acknowledged (Nagle), and the system holds back
-/// acknowledgements for 40 ms unless told otherwise, again and again: the option does not last (tcp(7)).
+/// acknowledgements for 40 ms unless set otherwise, again and again: the option does not last (tcp(7)).
 void acknowledgeAtOnce(int socket)
 {
   setOption(socket, IPPROTO_TCP, TCP_QUICKACK, 1);

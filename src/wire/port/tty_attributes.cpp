@@ -81,19 +81,19 @@ std::string findDifference(const termios2& actual, const termios2& wanted, const
   const tcflag_t differing = (actual.c_cflag ^ wanted.c_cflag) & ~without;
   if (!isRaw(actual, wanted))
   {
-    return "it does not go into raw mode";
+    return "it cannot be set to raw mode";
   }
   if ((differing & (PARENB | PARODD | CMSPAR)) != 0)
   {
-    return "it does not take the parity";
+    return "it does not accept the parity";
   }
   if ((differing & CSIZE) != 0)
   {
-    return "it does not take " + std::to_string(settings.data_bits) + " data bits";
+    return "it does not accept " + std::to_string(settings.data_bits) + " data bits";
   }
   if ((differing & CSTOPB) != 0)
   {
-    return "it does not take " + std::to_string(settings.stop_bits) + " stop bits";
+    return "it does not accept " + std::to_string(settings.stop_bits) + " stop bits";
   }
   if ((differing & CRTSCTS) != 0)
   {

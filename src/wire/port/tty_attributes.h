@@ -11,12 +11,12 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// What the driver of a tty has made of a request.
+/// The result of a request to the driver of a tty.
 struct TtyAttributes
 {
   /// Bits per second that it says it runs at; it need not be true (see uart_rate.h).
   unsigned baud_rate = 0;
-  /// What it did not take, in words; empty if nothing. The baud rate is judged by the caller.
+  /// The setting that it did not accept, in words; empty if none. The baud rate is judged by the caller.
   std::string refused;
 };
 

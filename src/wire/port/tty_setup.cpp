@@ -60,17 +60,17 @@ bool setDriverFlags(int tty)
   return ::ioctl(tty, TIOCGSERIAL, &information) != 0 || (information.flags & REPLACED_RATE) == 0;
 }
 
-/// What only a real port has. Returns what was refused.
+/// The settings that only a real port has. Returns the one that was refused, in words.
 std::string configureDriver(int tty, const SerialSettings& settings)
 {
   ::ioctl(tty, TIOCCBRK);
   if (!usePlainDiscipline(tty))
   {
-    return "another program has given it a line discipline that does not go away";
+    return "another program has given it a line discipline that cannot be removed";
   }
   if (!setDriverFlags(tty) && settings.baud_rate == REPLACED_BAUD_RATE)
   {
-    return "it does not take the baud rate 38400: setserial has put another one in its place (spd_normal ends that)";
+    return "it does not accept the baud rate 38400: setserial has put another one in its place (spd_normal ends that)";
   }
   return "";
 }
@@ -95,7 +95,7 @@ bool isPseudoTerminal(int tty)
 
 LockResult lockTty(int tty, bool pseudo_terminal)
 {
-  // The lock lies on the device file, whatever link it was opened through.
+  // The lock is on the device file, whatever link it was opened through.
   if (::flock(tty, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
   {
     return LockResult::Locked;
@@ -150,7 +150,7 @@ std::string enableKernelRs485(int tty)
   {
     return std::strerror(errno);
   }
-  // Polarity and delays may stand in the device tree: kept, unless there is no polarity at all.
+  // Polarity and delays may be in the device tree: kept, unless there is no polarity at all.
   configuration.flags |= SER_RS485_ENABLED;
   if ((configuration.flags & (SER_RS485_RTS_ON_SEND | SER_RS485_RTS_AFTER_SEND)) == 0)
   {

@@ -21,19 +21,19 @@ enum class LockResult
   Taken,
   /// Another process holds the lock.
   Locked,
-  /// It was made exclusive by somebody who does not hold the lock that this process sees: through another device file of
+  /// It was made exclusive by a program that does not hold the lock that this process sees: through another device file of
   /// the same port (each container has its own), or by a program without flock.
   Exclusive
 };
 
 /// Takes the port for this process alone: flock, and TIOCEXCL on a real port.
 LockResult lockTty(int tty, bool pseudo_terminal);
-/// Only for who has taken it.
+/// Only for the holder of the lock.
 void unlockTty(int tty, bool pseudo_terminal);
 
 /// Sets speed, parity, bits and raw mode, ends what another program has left (a speed behind 38400, a line discipline,
 /// stopped output, a break) and checks that all has been taken over. Returns what was refused, in words; empty if nothing
-/// was. \p sysfs tells the clock of a UART.
+/// was. \p sysfs has the clock of a UART.
 std::string configureTty(int tty, const SerialSettings& settings, bool pseudo_terminal,
                          const std::string& sysfs = SYSFS);
 

@@ -15,7 +15,7 @@ namespace wire
 {
 namespace
 {
-/// "188:0"; empty if \p device is no device file.
+/// "188:0"; empty if \p device is not a device file.
 std::string numberOf(const std::string& device)
 {
   struct stat status = {};

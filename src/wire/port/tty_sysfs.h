@@ -10,7 +10,7 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// Where the kernel mounts what it knows of its devices.
+/// Where the kernel shows its devices.
 constexpr const char* SYSFS = "/sys";
 
 /// Folder of \p device (a device file or a link to one) under \p sysfs, or empty: `class/tty/NAME` where that is this

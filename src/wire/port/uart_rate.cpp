@@ -18,7 +18,7 @@ namespace wire
 namespace
 {
 constexpr double TOLERANCE = 0.02;
-/// What an 8250 samples a bit with.
+/// An 8250 samples a bit so many times.
 constexpr unsigned SAMPLES_PER_BIT = 16;
 /// uart_get_baud_rate() of the kernel goes so much above the fastest rate.
 constexpr double KERNEL_TOLERANCE = 0.01;
@@ -40,7 +40,7 @@ bool near(double actual, unsigned baud_rate)
 
 std::string refusal(unsigned baud_rate)
 {
-  return "it does not take the baud rate " + std::to_string(baud_rate) + ": ";
+  return "it does not accept the baud rate " + std::to_string(baud_rate) + ": ";
 }
 }  // namespace
 

@@ -14,14 +14,14 @@ namespace
 {
 using compoway::Response;
 
-/// Characters of silence before a request. The protocol needs none: STX begins a frame. It keeps what is still under way
-/// apart from the request.
+/// Characters of silence before a request. The protocol needs none: STX begins a frame. It separates late bytes from
+/// the request.
 constexpr double GAP_CHARACTERS = 3.5;
 /// Node and sub-address.
 constexpr std::size_t SHORTEST_BODY = 4;
 /// Status (2) and related information (2) in the response to 0601.
 constexpr std::size_t STATUS_LENGTH = 4;
-/// Places in what stands between STX and ETX, behind node and sub-address.
+/// Places in the text between STX and ETX, behind node and sub-address.
 constexpr std::size_t END_CODE_POSITION = 4;
 constexpr std::size_t SERVICE_POSITION = 6;
 /// Places of ETX that the longest frame leaves: it needs one more character, the BCC.
@@ -113,7 +113,7 @@ Parsed::Kind kindOfEndCode(const Response& response)
 
 Parsed::Kind kindOf(const Request& request, const Response& response)
 {
-  // What the station refuses for its sub-address comes back with the one that reached it.
+  // A refusal because of the sub-address comes back with the sub-address that arrived.
   const bool own = response.sub_address == SUB_ADDRESS || response.end_code == SUB_ADDRESS_ERROR;
   if (response.node != compoway::nodeOf(request) || !own)
   {
@@ -167,7 +167,7 @@ std::size_t endOfText(const std::uint8_t* data, std::size_t size)
   return static_cast<std::size_t>(std::find_if(data + 1, limit, ends) - data);
 }
 
-/// A frame whose ETX stands at \p etx.
+/// A frame whose ETX is at \p etx.
 Parsed parseEnd(const std::uint8_t* data, std::size_t size, std::size_t etx, const Request* request)
 {
   // One byte behind ETX is the BCC, whatever it looks like.
@@ -178,7 +178,7 @@ Parsed parseEnd(const std::uint8_t* data, std::size_t size, std::size_t etx, con
   }
   const std::string body(data + 1, data + etx);
   const bool valid = compoway::bcc(data + 1, etx) == data[etx + 1] && isBody(body);
-  // What stands in the place of a wrong BCC may be the STX of the next frame.
+  // The byte in the place of a wrong BCC may be the STX of the next frame.
   return valid ? wholeFrame(body, length, request) : garbage(etx + 1);
 }
 

@@ -59,7 +59,7 @@ std::string nodeOf(const Request& request);
 /// MRC and SRC; shorter where the command text is.
 std::string serviceOf(const Request& request);
 
-/// What stands behind MRC and SRC.
+/// What follows MRC and SRC.
 std::string dataOf(const Request& request);
 
 /// The response between STX and ETX; empty if it cannot be one.
@@ -71,7 +71,7 @@ std::optional<std::uint16_t> hexValue(const std::string& text);
 /// Data characters of the normal response to \p request; empty where any number may come.
 std::optional<std::size_t> dataLength(const Request& request);
 
-/// True if \p data may stand in the normal response to \p request.
+/// True if \p data may be in the normal response to \p request.
 bool dataFits(const Request& request, const std::string& data);
 }  // namespace compoway
 }  // namespace wire

@@ -18,7 +18,7 @@ namespace
 constexpr unsigned REPLIES_FOR_TRUST = 3;
 /// As rule 3.9 has it: no repetition behind a lost request.
 constexpr std::chrono::seconds BAR_TIME{ 1 };
-/// Where numbers tell, what is owed is forgotten after this time, and in any case the oldest of so many.
+/// Where numbers distinguish replies, what is owed is forgotten after this time, and in any case the oldest of so many.
 constexpr std::chrono::seconds MEMORY{ 60 };
 constexpr std::size_t MOST_OWED = 256;
 /// Requests of the connection whose numbers are told from numbers that a gateway has made up.
@@ -117,7 +117,7 @@ TimePoint GatewayRecord::mayAskAt(const std::string& shape, TimePoint now) const
     }
     if (quirky_)
     {
-      // Not then either: the connection is to be opened anew by then.
+      // Not then either: the connection is to be opened again by then.
       at = std::max({ at, owed.request_end + timeout_, now + BAR_TIME });
     }
     else if (owed.number == current_.number)
@@ -158,7 +158,7 @@ bool GatewayRecord::takes(const Answer& answer)
 {
   const NumberHabit number = acceptableNumber(answer);
   const UnitHabit unit = unitHabit(current_.station, answer.unit);
-  // Numbers that have proved right decide from then on: a reply under another one is none of ours.
+  // Numbers that have proved right decide from then on: a reply with another one answers no request of this node.
   const bool foreign = trusted_ && number != NumberHabit::Same;
   if (mixed_ || foreign || number == NumberHabit::None || unit == UnitHabit::None)
   {
@@ -215,7 +215,7 @@ void GatewayRecord::answered(const Answer& answer, bool exact)
   {
     return;
   }
-  // A gateway answers in order: what was asked before is not going to be answered any more.
+  // A gateway answers in order: earlier requests will not be answered any more.
   const auto passed = [this, &answer](const Asked& owed) {
     return answer.exception ? owed.shape.substr(0, 1) != current_.shape.substr(0, 1) : owed.shape != current_.shape;
   };
@@ -229,7 +229,7 @@ void GatewayRecord::noteQuirk(NumberHabit number, UnitHabit unit)
 {
   wrong_numbers_ |= number == NumberHabit::Same ? 0 : static_cast<unsigned>(number);
   wrong_units_ |= unit == UnitHabit::Same ? 0 : static_cast<unsigned>(unit);
-  // A number that has proved right tells whose answer it is, whatever the unit.
+  // A number that has proved right shows whose answer it is, whatever the unit.
   quirky_ = quirky_ || !trusted_;
 }
 
@@ -274,7 +274,7 @@ std::optional<GatewayRecord::Asked> GatewayRecord::takeLate(const Answer& answer
   const UnitHabit unit = unitHabit(request.station, answer.unit);
   if (found.size() > 1)
   {
-    // Most likely the oldest one's, but nothing that comes can be told apart for certain any more.
+    // Most likely the oldest one's, but replies can no longer be assigned for certain.
     mixed_ = true;
     request.ticket = 0;
     return request;
@@ -336,7 +336,7 @@ std::string GatewayRecord::quirk() const
   unit(UnitHabit::Zero, "unit 0");
   unit(UnitHabit::One, "unit 1");
   unit(UnitHabit::Last, "unit 255");
-  return habits.empty() ? "" : "its replies bear " + util::joined(habits, " and ") + " instead of what was asked";
+  return habits.empty() ? "" : "its replies carry " + util::joined(habits, " and ") + " instead of what was asked";
 }
 
 std::string GatewayRecord::mustReopen(TimePoint now) const

@@ -14,7 +14,7 @@ namespace wire
 {
 namespace modbus
 {
-/// What bytes at some place are to the awaited reply.
+/// How the bytes at some place compare with the awaited reply.
 enum class Match
 {
   None,

@@ -39,7 +39,7 @@ std::size_t replyLength(const Request& request);
 /// drive has not answered it: no reply in time, not a refusal.
 std::uint16_t errorIdOf(const Bytes& pdu);
 
-/// The shape (Protocol::shapeOfReply) that a reply from \p station answers to, as bytes; empty if it is no reply.
+/// The shape (Protocol::shapeOfReply) that a reply from \p station answers to, as bytes; empty if it is not a reply.
 Bytes replyShape(std::uint8_t station, const Bytes& pdu);
 
 /// Lengths that a frame beginning like \p data (two bytes at least) can have as a reply or as a request, shorter one

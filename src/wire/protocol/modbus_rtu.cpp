@@ -48,7 +48,7 @@ Parsed ownFrame(Match match, const std::uint8_t* data, std::size_t length)
   return wholeFrame(exception ? Parsed::Kind::Exception : Parsed::Kind::Reply, data, length);
 }
 
-/// First place behind the head where the awaited reply stands complete; \p size if nowhere. It is looked for although
+/// First place behind the head where the awaited reply is complete; \p size if nowhere. It is looked for although
 /// the bytes in front of it may become a frame yet, so that noise which looks like the beginning of one cannot hide it.
 std::size_t findBehindHead(const AwaitedReply& awaited, const std::uint8_t* data, std::size_t size)
 {

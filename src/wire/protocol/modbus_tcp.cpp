@@ -27,7 +27,7 @@ constexpr std::size_t EXCEPTION_BODY = 3;
 constexpr std::size_t LONGEST_BODY = modbus::LONGEST_FRAME - modbus::CRC_LENGTH;
 /// Numbers run from 1 to this: one that a gateway has put to 0 differs from all of them.
 constexpr std::uint64_t HIGHEST_NUMBER = 0xFFFF;
-/// Numbers that the last requests had: a frame with one of them is late, with any other it is none of ours.
+/// Numbers that the last requests had: a frame with one of them is late, with any other it is foreign.
 constexpr std::uint64_t REMEMBERED_NUMBERS = 1000;
 /// Silences of 3.5 characters on the line behind: before the request, before the reply and after it.
 constexpr double GATEWAY_GAP_CHARACTERS = 3 * 3.5;
@@ -81,7 +81,7 @@ std::size_t bodyLength(const std::uint8_t* data, std::size_t size)
   return ends_there ? stated : EXCEPTION_BODY;
 }
 
-/// What is there of a frame's body to the awaited reply.
+/// How the bytes of a frame's body that have arrived compare with the awaited reply.
 Match matchBody(const Request& request, const std::uint8_t* data, std::size_t size, std::size_t body_length)
 {
   const std::uint8_t unit = data[HEADER_LENGTH];

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "config/yaml.h"
+#include "drive/profile/problems.h"
 #include "inverter_bus/bus/configuration.h"
 #include "simulation/drives/motor.h"
 #include "support/simulation_test_bus.h"
@@ -35,10 +36,10 @@ const std::string ONE = "scan_list: [{name: a, node: 1, drive: omron_mx2}]\n";
 
 config::Value valueOf(const std::string& text)
 {
-  std::vector<config::YamlProblem> problems;
-  const auto tree = config::readYaml(text, problems);
+  drive::Problems problems;
+  const auto tree = config::readYaml(text, "line.yaml", config::Purpose::Parameters, problems);
   EXPECT_TRUE(tree && problems.empty()) << text;
-  return tree ? config::toParameters(*tree, problems) : config::Value();
+  return tree.value_or(config::Value());
 }
 
 std::string refusal(const std::string& text)
@@ -93,8 +94,9 @@ TEST(BenchScanList, hasTheDriversWarningsAndItsOwnRefusals)
   EXPECT_THAT(readScanList(valueOf("rate: 5\n" + ONE), "line.yaml", PROFILES).warnings,
               ElementsAre(HasSubstr("'rate'")));
   EXPECT_THAT(refusal(ONE + "simulation: {a: {nonsense: 1}}\n"), HasSubstr("unknown key"));
+  EXPECT_THAT(refusal(ONE + "simulation: {a: {load: 5}}\n"), HasSubstr("line.yaml:2: simulation.a.load: 5 (allowed:"));
   EXPECT_THAT(refusal("scan_list: [{name: a, node: 1, drive: hitachi_wj200}]\n"), HasSubstr("can't be simulated"));
-  EXPECT_THAT(refusal(ONE + "simulation: {b: {model: profile, station: 2}}\n"), HasSubstr("simulation/b/model"));
+  EXPECT_THAT(refusal(ONE + "simulation: {b: {model: profile, station: 2}}\n"), HasSubstr("simulation.b.model"));
 }
 
 TEST(BenchScanList, findsThePackageAsRoslaunchDoes)

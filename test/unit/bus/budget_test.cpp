@@ -5,8 +5,9 @@
 // At 19200 8N1 a character has 10 bits = 520.8 us and the gap 3.5 of them = 1.823 ms. An MX2 waits 5 ms before a reply.
 //   coils 0001h-0018h:     8 characters there,  8 back: 16 * 0.5208 + 2 * 1.823 + 5 = 16.979 ms
 //   registers 1001h-1004h: 8 characters there, 13 back: 21 * 0.5208 + 2 * 1.823 + 5 = 19.583 ms  together 36.563 ms
-//   slow reads, once a second each: 11.458 + 20.833 + 11.458 = 43.750 ms, with the drive's wait 58.750 ms
-//   a cycle with them in proportion: 36.563 / (1 - 0.04375) = 38.24 ms, with the drive's wait 38.85 ms
+//   slow reads, with the drive's wait: 16.458 + 25.833 + 16.458 = 58.750 ms; once a second each they take 5.875 % of the
+//   wire, and never more than 7.5 %
+//   a cycle with them in proportion: 36.563 / (1 - 0.05875) = 38.845 ms
 //   longest exchange: 33 characters, 2 gaps, 5 ms, 100 ms of silence and a pause of 25 ms in the reply = 150.833 ms
 //   a stop after it: gap and 8 characters = 5.990 ms, with a gap behind it 7.813 ms
 
@@ -90,21 +91,22 @@ double ms(Duration duration)
 TEST(Budget, cycleOfOneMx2)
 {
   const Planned bus(1);
-  EXPECT_THAT(ms(bus.budget.cycle()), AllOf(testing::Ge(38.2), testing::Le(38.9)));
+  EXPECT_NEAR(ms(bus.budget.cycle()), 38.845, 0.01);
 }
 
 TEST(Budget, cycleOfTwoMx2)
 {
-  // 73.125 / (1 - 0.0875) = 80.14, with the drives' wait 73.125 / (1 - 0.1175) = 82.86.
+  // Slow reads would take 11.75 %: 73.125 / (1 - 0.075).
   const Planned bus(2);
-  EXPECT_THAT(ms(bus.budget.cycle()), AllOf(testing::Ge(80.1), testing::Le(82.9)));
+  EXPECT_NEAR(ms(bus.budget.cycle()), 79.054, 0.01);
 }
 
 TEST(Budget, cycleAt9600With11Bits)
 {
-  // A character 1.1458 ms, the gap 4.0104 ms: 31.354 + 37.083 = 68.438; slow 96.25 to 111.25: 75.73 to 77.00.
+  // A character 1.1458 ms, the gap 4.0104 ms: 31.354 + 37.083 = 68.438; slow reads would take 11.1 %:
+  // 68.438 / (1 - 0.075).
   const Planned bus(1, 9600, 11);
-  EXPECT_THAT(ms(bus.budget.cycle()), AllOf(testing::Ge(75.7), testing::Le(77.1)));
+  EXPECT_NEAR(ms(bus.budget.cycle()), 73.987, 0.01);
 }
 
 TEST(Budget, cycleAbove19200BaudWithTheFixedGap)
@@ -112,6 +114,32 @@ TEST(Budget, cycleAbove19200BaudWithTheFixedGap)
   // 38400 8N1: a character 0.2604 ms, the gap 1.75 ms: 12.667 + 13.969 = 26.635; slow 26.91 to 41.91: 27.37 to 27.80.
   const Planned bus(1, 38400);
   EXPECT_THAT(ms(bus.budget.cycle()), AllOf(testing::Ge(27.3), testing::Le(27.9)));
+}
+
+TEST(Budget, slowPeriodIsWhatTheirShareOfTheWireAllows)
+{
+  // The cycle is below 0.7 s, so that of 7.5 % of 10 s 0.7 s may be saved up: 7.009 % of the wire for 31 * 58.750 ms; the
+  // cycle of 31 drives is 1.225 s: 6.681 %.
+  EXPECT_EQ(Planned(1).budget.slowPeriod(), std::chrono::seconds(1));
+  EXPECT_NEAR(toSeconds(Planned(5).budget.slowPeriod()), 5 * 0.05875 / 0.07009, 0.01);
+  EXPECT_NEAR(toSeconds(Planned(31).budget.slowPeriod()), 31 * 0.05875 / 0.06681, 0.05);
+}
+
+TEST(Budget, warnsAboveFiveSecondsAndNamesSkip)
+{
+  EXPECT_THAT(Planned(5).texts(Level::Ok), Contains(HasSubstr("slow values every 4.19 s")));
+  EXPECT_THAT(Planned(5).texts(Level::Warn), Not(Contains(HasSubstr("skip"))));
+  EXPECT_THAT(Planned(6).texts(Level::Warn), Contains(AllOf(HasSubstr("slow values"), HasSubstr("skip"))));
+}
+
+TEST(Budget, whoWantsThemSeldomIsNotWarned)
+{
+  Planned bus(6);
+  bus.configuration.bus.slow_interval = 30.0;
+  EXPECT_THAT(bus.texts(Level::Warn), Not(Contains(HasSubstr("skip"))));
+  bus.configuration.bus.slow_interval = 0.0;
+  EXPECT_THAT(bus.texts(Level::Warn), Not(Contains(HasSubstr("skip"))));
+  EXPECT_THAT(bus.texts(Level::Ok), Contains(HasSubstr("slow values never")));
 }
 
 TEST(Budget, longestExchangeIsTheReadOfTenRegistersWhoseReplyBeginsAtTheLastMoment)

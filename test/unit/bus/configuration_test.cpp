@@ -252,7 +252,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Wrong{ "unknownKey", "baudrate: 9600\n" + ONE, { "~:", "'baudrate'", "9600", "baud_rate", ALLOWED } },
         Wrong{ "emptyPort", "port: ''\n" + ONE, { "'port'", "''", ALLOWED } },
-        Wrong{ "portNumber", "port: 5\n" + ONE, { "'port'", "5", "no text", ALLOWED } },
+        Wrong{ "portNumber", "port: 5\n" + ONE, { "'port'", "5", "not a text", ALLOWED } },
         Wrong{
             "unknownNetwork", "port: udp://gateway\n" + ONE, { "'port'", "udp://gateway", "unknown kind", ALLOWED } },
         Wrong{ "tunnelWithoutPort", "port: rtu+tcp://gateway\n" + ONE, { "'port'", "rtu+tcp://gateway", ALLOWED } },
@@ -312,9 +312,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "threeStopBits", "stop_bits: 3\n" + ONE, { "'stop_bits'", "3", "1, 2" } },
         Wrong{ "unknownRs485", "rs485: rts\n" + ONE, { "'rs485'", "'rts'", "auto, kernel, rts_high, rts_low" } },
         Wrong{ "negativeInterval", "interval: -0.1\n" + ONE, { "'interval'", "-0.1", "from 0 to 655.35 s" } },
+        Wrong{ "negativeSlowInterval", "slow_interval: -1\n" + ONE, { "'slow_interval'", "-1", "from 0 to 3600 s" } },
+        Wrong{ "slowIntervalNotANumber",
+               "slow_interval: .nan\n" + ONE,
+               { "'slow_interval'", "nan", "not finite", ALLOWED } },
         Wrong{ "longInterval", "interval: 655.36\n" + ONE, { "'interval'", "655.36", "from 0 to 655.35 s" } },
         Wrong{ "intervalText", "interval: fast\n" + ONE, { "'interval'", "'fast'", ALLOWED } },
-        Wrong{ "intervalTruth", "interval: true\n" + ONE, { "'interval'", "true", "no number", ALLOWED } },
+        Wrong{ "intervalTruth", "interval: true\n" + ONE, { "'interval'", "true", "not a number", ALLOWED } },
         Wrong{ "intervalNotANumber", "interval: .nan\n" + ONE, { "'interval'", "nan", "not finite", ALLOWED } },
         Wrong{ "intervalInfinite", "interval: .inf\n" + ONE, { "'interval'", "inf", "not finite", ALLOWED } },
         Wrong{ "noResponseTimeout", "response_timeout: 0\n" + ONE, { "'response_timeout'", "= 0", "above 0", "10 s" } },
@@ -323,7 +327,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "manyRetries", "retries: 11\n" + ONE, { "'retries'", "11", "from 0 to 10" } },
         Wrong{ "brokenRetries", "retries: 1.5\n" + ONE, { "'retries'", "1.5", "whole number", "from 0 to 10" } },
         Wrong{ "offlineAfterNothing", "offline_after: 0\n" + ONE, { "'offline_after'", "0", "from 1 to 100" } },
-        Wrong{ "exclusiveNumber", "exclusive: 1\n" + ONE, { "'exclusive'", "1", "true, false" } },
+        Wrong{ "exclusiveNumber", "exclusive: 1\n" + ONE, { "'exclusive'", "1", "true or false" } },
         Wrong{ "highPriority", "realtime_priority: 100\n" + ONE, { "'realtime_priority'", "100", "from 0 to 99" } },
         Wrong{ "idleDivisorZero", "idle_divisor: 0\n" + ONE, { "'idle_divisor'", "0", "from 1 to 1000" } },
         Wrong{ "parameterAccess", "parameter_access: none\n" + ONE, { "'parameter_access'", "read_write, read_only" } },
@@ -336,7 +340,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "missingList", "port: /dev/ttyS0\n", { "~:", "'scan_list' is missing", ALLOWED } },
         Wrong{ "emptyList", "scan_list: []\n", { "'scan_list'", "is empty", ALLOWED } },
         Wrong{ "listMap", "scan_list: {belt: {node: 1}}\n", { "'scan_list'", "neither", ALLOWED } },
-        Wrong{ "listOfNumbers", "scan_list: [1, 2]\n", { "~scan_list[0]", "1", "no map", ALLOWED } },
+        Wrong{ "listOfNumbers", "scan_list: [1, 2]\n", { "~scan_list[0]", "1", "not a map", ALLOWED } },
         Wrong{ "emptyMask", "scan_list: 0\n", { "'scan_list'", "= 0", "no station", ALLOWED } },
         Wrong{ "maskOfBitZero", "scan_list: '#00000001'\n", { "'scan_list'", "#00000001", "no station", ALLOWED } },
         Wrong{
@@ -346,7 +350,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "longTextMask", "scan_list: '0x100000002'\n", { "'scan_list'", "0x100000002", ALLOWED } },
         Wrong{ "wordMask", "scan_list: all\n", { "'scan_list'", "'all'", ALLOWED } },
         Wrong{ "maskWithoutDrive", "scan_list: 2\n", { "'drive' is missing", "station 1", ALLOWED } },
-        Wrong{ "defaultsList", "defaults: [1]\n" + ONE, { "~defaults", "[1]", "no map", ALLOWED } },
+        Wrong{ "defaultsList", "defaults: [1]\n" + ONE, { "~defaults", "[1]", "not a map", ALLOWED } },
         Wrong{ "defaultsName", "defaults: {name: x}\n" + ONE, { "~defaults", "'name'", "'x'", ALLOWED } },
         Wrong{ "defaultsNode", "defaults: {node: 1}\n" + ONE, { "~defaults", "'node'", ALLOWED } },
         Wrong{ "badDefault",
@@ -424,8 +428,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "noEntryTimeout", entry("response_timeout: 0.0"), { BELT, "'response_timeout'", "above 0" } },
         Wrong{ "ratedCurrent", entry("rated_current: 0"), { BELT, "'rated_current'", "above 0" } },
         Wrong{ "ratedVoltage", entry("rated_voltage: high"), { BELT, "'rated_voltage'", "'high'" } },
-        Wrong{ "configureBlock", entry("configure_block: 1"), { BELT, "'configure_block'", "true, false" } },
-        Wrong{ "configureMap", entry("configure_map: 1"), { BELT, "'configure_map'", "true, false" } },
+        Wrong{ "configureBlock", entry("configure_block: 1"), { BELT, "'configure_block'", "true or false" } },
+        Wrong{ "configureMap", entry("configure_map: 1"), { BELT, "'configure_map'", "true or false" } },
         Wrong{ "configureMapOfADriveWithoutOne",
                "scan_list: [{name: fan, node: 1, drive: omron_rx, configure_map: true}]\n",
                { "(fan)", "'configure_map'", "omron_rx has none", ALLOWED } },
@@ -437,12 +441,14 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{ "unexpectedMotion",
                entry("stop_unexpected_motion: please"),
                { BELT, "'stop_unexpected_motion'", ALLOWED } },
-        Wrong{ "releaseOnExit", entry("release_on_exit: 0"), { BELT, "'release_on_exit'", "true, false" } },
+        Wrong{ "releaseOnExit", entry("release_on_exit: 0"), { BELT, "'release_on_exit'", "true or false" } },
         Wrong{ "overridesList", entry("overrides: [1]"), { BELT, "'overrides'", "[1]", ALLOWED } },
         Wrong{ "unknownOverride", entry("overrides: {no_such_key: 1}"), { BELT, "no_such_key" } },
         Wrong{ "skipText", entry("skip: torque"), { BELT, "'skip'", ALLOWED } },
         Wrong{ "skipNumber", entry("skip: [1]"), { BELT, "'skip'", ALLOWED } },
-        Wrong{ "skipUnknown", entry("skip: [torque, torqe]"), { BELT, "'skip'", "'torqe'", "no field", "dc_voltage" } },
+        Wrong{ "skipUnknown",
+               entry("skip: [torque, torqe]"),
+               { BELT, "'skip'", "'torqe'", "not a status field", "dc_voltage" } },
         Wrong{ "skipVelocity", entry("skip: [velocity]"), { BELT, "'skip'", "'velocity'", "dc_voltage" } },
         Wrong{ "skipRun", entry("skip: [run_seen]"), { BELT, "'skip'", "'run_seen'", "can't do without", "torque" } },
         Wrong{ "skipFault", entry("skip: [faulted]"), { BELT, "'skip'", "'faulted'", "can't do without", "torque" } },
@@ -484,7 +490,7 @@ TEST(ConfigurationTest, skippedFieldsReachTheDrive)
 
 TEST(ConfigurationTest, aFileWithoutAMapIsRefused)
 {
-  EXPECT_THAT(refusal("- 1\n"), AllOf(HasSubstr("~"), HasSubstr("no map"), HasSubstr(ALLOWED)));
+  EXPECT_THAT(refusal("- 1\n"), AllOf(HasSubstr("~"), HasSubstr("not a map"), HasSubstr(ALLOWED)));
   EXPECT_THAT(refusal(""), AllOf(HasSubstr("is empty"), HasSubstr(ALLOWED)));
 }
 
@@ -537,6 +543,13 @@ TEST(ConfigurationTest, aMissingFileIsNamed)
   EXPECT_THROW(readYamlFile("/nonexistent/scan_list.yaml"), drive::ConfigurationError);
 }
 
+TEST(ConfigurationTest, anUnknownDriveIsNamedOnce)
+{
+  const std::string message = refusal(driven("omron_mx3"));
+  EXPECT_THAT(message, StartsWith(BELT + ": key 'drive': value 'omron_mx3': " + ALLOWED));
+  EXPECT_EQ(message.find(BELT), message.rfind(BELT));
+}
+
 TEST(ConfigurationTest, aMalformedProfileIsReportedWithFileAndLine)
 {
   const std::string path = testing::TempDir() + "bus_configuration_test_profile.yaml";
@@ -549,16 +562,16 @@ TEST(ConfigurationTest, valuesHaveTheTypesOfTheParameterServer)
 {
   const ScanListFile file("{a: 1, b: 1.0, c: '1', d: true, e: 0x10, f: 1.0e+3, g: text, h: 1e3, i: off, j: -3}\n");
   const Value value = readYamlFile(file.path());
-  EXPECT_EQ(Value::Type::Integer, value.map.at("a").type);
-  EXPECT_EQ(Value::Type::Number, value.map.at("b").type);
-  EXPECT_EQ(Value::Type::Text, value.map.at("c").type);
-  EXPECT_EQ(Value::Type::Boolean, value.map.at("d").type);
-  EXPECT_EQ(16, value.map.at("e").integer);
-  EXPECT_DOUBLE_EQ(1000.0, value.map.at("f").number);
-  EXPECT_EQ("text", value.map.at("g").text);
-  EXPECT_EQ(Value::Type::Text, value.map.at("h").type);
-  EXPECT_FALSE(value.map.at("i").boolean);
-  EXPECT_EQ(-3, value.map.at("j").integer);
+  EXPECT_EQ(Value::Type::Integer, value.find("a")->type);
+  EXPECT_EQ(Value::Type::Number, value.find("b")->type);
+  EXPECT_EQ(Value::Type::Text, value.find("c")->type);
+  EXPECT_EQ(Value::Type::Boolean, value.find("d")->type);
+  EXPECT_EQ(16, value.find("e")->integer);
+  EXPECT_DOUBLE_EQ(1000.0, value.find("f")->number);
+  EXPECT_EQ("text", value.find("g")->text);
+  EXPECT_EQ(Value::Type::Text, value.find("h")->type);
+  EXPECT_FALSE(value.find("i")->boolean);
+  EXPECT_EQ(-3, value.find("j")->integer);
 }
 
 TEST(ConfigurationTest, whatTheParameterServerWouldHideIsRefusedInAFile)
@@ -616,6 +629,8 @@ TEST(ConfigurationTest, aNumberThatIsATextToYamlIsTakenWithAHint)
   EXPECT_DOUBLE_EQ(0.5, configuration.bus.inverters[0].command_timeout);
   EXPECT_EQ(2U, configuration.warnings.size());
   EXPECT_DOUBLE_EQ(0.005, read("interval: 5.0e-3\n" + ONE).bus.interval);
+  EXPECT_DOUBLE_EQ(1.0, read(ONE).bus.slow_interval);
+  EXPECT_DOUBLE_EQ(0.0, read("slow_interval: 0\n" + ONE).bus.slow_interval);
 }
 
 TEST(ConfigurationTest, whatIsMeantForOthersIsIgnoredWithAWarning)
@@ -644,10 +659,9 @@ TEST(ConfigurationTest, whatResemblesAKeyAtAnyLevelIsRefused)
                                                                 { "scan-list", "'scan_list'" },
                                                                 { "velocity_limit", "'" },
                                                                 { "command_timeout",
-                                                                  "belongs into scan_list or defaults" },
-                                                                { "name", "belongs into scan_list or defaults" },
-                                                                { "turnaround", "belongs into simulation" },
-                                                                { "slow_interval", "later version" },
+                                                                  "belongs in scan_list or defaults" },
+                                                                { "name", "belongs in scan_list or defaults" },
+                                                                { "turnaround", "belongs in simulation" },
                                                                 { "in_service", "later version" },
                                                                 { "parameters", "later version" },
                                                                 { "parameters_on_difference", "later version" } };

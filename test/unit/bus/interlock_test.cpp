@@ -4,6 +4,7 @@
 
 #include "bus/rules/interlock.h"
 
+#include <ostream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -43,13 +44,29 @@ public:
   {
   }
 
+  /// What would become of a velocity other than 0 at \p time [ms].
+  Permission judge(int time, const Publisher& from = publisher()) const
+  {
+    return interlock.judge(at(time), from, holds).permission;
+  }
+
+  LockReason reason(int time, const Publisher& from = publisher()) const
+  {
+    return interlock.judge(at(time), from, holds).reason;
+  }
+
+  bool locked(int time) const
+  {
+    return interlock.locked(at(time), holds);
+  }
+
   /// A velocity other than 0 at \p time [ms].
   Permission command(int time, const Publisher& from = publisher())
   {
-    const Permission permission = interlock.judge(at(time), from);
+    const Permission permission = judge(time, from);
     if (permission != Permission::Repeat)
     {
-      interlock.commanded(at(time), from, permission == Permission::Granted);
+      interlock.commanded(at(time), from, permission == Permission::Granted, holds);
     }
     return permission;
   }
@@ -91,6 +108,7 @@ public:
   }
 
   Interlock interlock;
+  Holds holds;
 };
 
 /// Online since 0 ms and free for "/planner", whose first command came at 1000 ms.
@@ -105,12 +123,152 @@ public:
   }
 };
 
+// --- all reasons in one place ----------------------------------------------------------------------------------------
+
+/// What locks, with the reason that is told for it and with what ends it.
+struct Cause
+{
+  const char* name;
+  LockReason reason;
+  void (*begin)(Guarded& belt);
+  void (*end)(Guarded& belt, int time);
+};
+
+std::ostream& operator<<(std::ostream& out, const Cause& cause)
+{
+  return out << cause.name;
+}
+
+const Cause HOLDS[] = {
+  { "unidentified", LockReason::Unidentified, [](Guarded& belt) { belt.holds.unidentified = true; },
+    [](Guarded& belt, int) { belt.holds.unidentified = false; } },
+  { "resetting", LockReason::Resetting, [](Guarded& belt) { belt.holds.resetting = true; },
+    [](Guarded& belt, int) { belt.holds.resetting = false; } },
+  { "in setup", LockReason::InSetup, [](Guarded& belt) { belt.holds.in_setup = true; },
+    [](Guarded& belt, int) { belt.holds.in_setup = false; } },
+};
+
+class InterlockHold : public testing::TestWithParam<Cause>
+{
+};
+
+INSTANTIATE_TEST_SUITE_P(Interlock, InterlockHold, testing::ValuesIn(HOLDS));
+
+TEST_P(InterlockHold, locksAndRefusesEverybodyForOneReason)
+{
+  Running belt;
+  EXPECT_FALSE(belt.locked(2000));
+  GetParam().begin(belt);
+  EXPECT_TRUE(belt.locked(2000));
+  EXPECT_EQ(belt.reason(2000), GetParam().reason) << "who was let in";
+  belt.zero(2000, publisher("/neutral"));
+  EXPECT_TRUE(belt.locked(2000));
+  EXPECT_EQ(belt.reason(2000, publisher("/neutral")), GetParam().reason);
+  EXPECT_EQ(belt.reason(60000, publisher("/silent")), GetParam().reason);
+  EXPECT_TRUE(belt.locked(60000));
+}
+
+TEST_P(InterlockHold, whoWasRefusedMustReturnToNeutral)
+{
+  Running belt;
+  GetParam().begin(belt);
+  EXPECT_EQ(belt.command(2000), Permission::Locked);
+  GetParam().end(belt, 2100);
+  EXPECT_EQ(belt.command(2100), Permission::Locked) << "the motor must not start when the hold happens to end";
+  EXPECT_EQ(belt.reason(2100), LockReason::Neutral);
+  EXPECT_TRUE(belt.locked(2100)) << "nobody is free";
+  belt.zero(2200);
+  EXPECT_FALSE(belt.locked(2200));
+  EXPECT_EQ(belt.command(2210), Permission::Granted);
+}
+
+TEST_P(InterlockHold, whoWasRefusedMayAlsoBeSilent)
+{
+  Running belt;
+  GetParam().begin(belt);
+  EXPECT_EQ(belt.stream(2000, 2400, 100), 0);
+  GetParam().end(belt, 2400);
+  EXPECT_TRUE(belt.locked(2799));
+  EXPECT_EQ(belt.judge(2800), Permission::Granted);
+  EXPECT_FALSE(belt.locked(2800));
+}
+
+TEST_P(InterlockHold, whoHasSentNothingMeanwhileGoesOn)
+{
+  Running belt;
+  GetParam().begin(belt);
+  EXPECT_EQ(belt.command(2000, publisher("/other")), Permission::Locked);
+  GetParam().end(belt, 2100);
+  EXPECT_FALSE(belt.locked(2100));
+  EXPECT_EQ(belt.command(2110), Permission::Granted);
+  EXPECT_EQ(belt.command(2120, publisher("/other")), Permission::Locked) << "the lock counts per publisher";
+}
+
+TEST_P(InterlockHold, doesNotDisturbTheSilenceOfALockBehindIt)
+{
+  Running belt;
+  belt.stopAndConfirm(2000);
+  GetParam().begin(belt);
+  GetParam().end(belt, 2400);
+  EXPECT_TRUE(belt.locked(2499));
+  EXPECT_FALSE(belt.locked(2500));
+}
+
+TEST_P(InterlockHold, whatCountsMoreIsTheAnswer)
+{
+  Running belt;
+  GetParam().begin(belt);
+  belt.interlock.stopRequested();
+  EXPECT_EQ(belt.judge(2000), Permission::StopPending);
+  EXPECT_TRUE(belt.locked(2000));
+  belt.interlock.offline();
+  EXPECT_EQ(belt.judge(2000), Permission::Offline);
+  EXPECT_TRUE(belt.locked(2000));
+}
+
+TEST(Interlock, aStopThatLocksNobodyIsNoLock)
+{
+  Running belt;
+  belt.holds.stop = true;
+  EXPECT_EQ(belt.command(2000), Permission::StopPending);
+  EXPECT_FALSE(belt.locked(2000));
+  belt.holds.stop = false;
+  EXPECT_EQ(belt.command(2100), Permission::Granted);
+}
+
+TEST(Interlock, aStopThatIsConfirmedBeforeTheFirstStatusOpensNothing)
+{
+  Guarded belt;
+  belt.stopAndConfirm(0);
+  belt.zero(10);
+  EXPECT_TRUE(belt.locked(60000));
+  EXPECT_EQ(belt.reason(60000), LockReason::Unread);
+  EXPECT_EQ(belt.reason(60000, publisher("/other")), LockReason::Unread);
+  belt.interlock.online(at(60000));
+  EXPECT_EQ(belt.judge(60000), Permission::Granted) << "it has sent 0 since the stop";
+  EXPECT_FALSE(belt.locked(60000));
+}
+
+TEST(Interlock, saysWhichReasonItIs)
+{
+  Guarded belt;
+  EXPECT_EQ(belt.reason(0), LockReason::Unread);
+  belt.interlock.online(at(0));
+  EXPECT_EQ(belt.reason(100), LockReason::Neutral);
+  belt.interlock.faulted(true);
+  EXPECT_EQ(belt.reason(10000), LockReason::Tripped);
+  belt.holds.resetting = true;
+  EXPECT_EQ(belt.reason(10000), LockReason::Resetting);
+  belt.holds.unidentified = true;
+  EXPECT_EQ(belt.reason(10000), LockReason::Unidentified);
+}
+
 // --- start-up --------------------------------------------------------------------------------------------------------
 
 TEST(Interlock, isLockedBeforeTheFirstStatus)
 {
   Guarded belt;
-  EXPECT_TRUE(belt.interlock.locked(at(0)));
+  EXPECT_TRUE(belt.locked(0));
   EXPECT_EQ(belt.command(0), Permission::Locked);
   EXPECT_EQ(belt.command(100000, publisher("/other")), Permission::Locked);
 }
@@ -121,7 +279,7 @@ TEST(Interlock, streamThatGoesOnAcrossTheStartIsRefusedForEver)
   EXPECT_EQ(belt.stream(0, 1000, 100), 0);
   belt.interlock.online(at(1000));
   EXPECT_EQ(belt.stream(1000, 60000, 100), 0);
-  EXPECT_TRUE(belt.interlock.locked(at(60000)));
+  EXPECT_TRUE(belt.locked(60000));
 }
 
 TEST(Interlock, silenceAtStartCountsFromTheFirstStatusAlsoAfterAStop)
@@ -130,8 +288,8 @@ TEST(Interlock, silenceAtStartCountsFromTheFirstStatusAlsoAfterAStop)
   guarded.interlock.stopRequested();
   guarded.interlock.stopConfirmed(at(100));
   guarded.interlock.online(at(1000));
-  EXPECT_EQ(guarded.interlock.judge(at(1499), publisher()), Permission::Locked);
-  EXPECT_EQ(guarded.interlock.judge(at(1500), publisher()), Permission::Granted);
+  EXPECT_EQ(guarded.judge(1499), Permission::Locked);
+  EXPECT_EQ(guarded.judge(1500), Permission::Granted);
 }
 
 TEST(Interlock, zeroUnlocksAtStart)
@@ -140,17 +298,17 @@ TEST(Interlock, zeroUnlocksAtStart)
   belt.interlock.online(at(0));
   belt.zero(10);
   EXPECT_EQ(belt.command(20), Permission::Granted);
-  EXPECT_FALSE(belt.interlock.locked(at(20)));
+  EXPECT_FALSE(belt.locked(20));
 }
 
 TEST(Interlock, silenceFromTheFirstStatusOnUnlocks)
 {
   Guarded belt;
   belt.interlock.online(at(0));
-  EXPECT_EQ(belt.interlock.judge(at(499), publisher()), Permission::Locked);
-  EXPECT_TRUE(belt.interlock.locked(at(499)));
-  EXPECT_EQ(belt.interlock.judge(at(500), publisher()), Permission::Granted);
-  EXPECT_FALSE(belt.interlock.locked(at(500)));
+  EXPECT_EQ(belt.judge(499), Permission::Locked);
+  EXPECT_TRUE(belt.locked(499));
+  EXPECT_EQ(belt.judge(500), Permission::Granted);
+  EXPECT_FALSE(belt.locked(500));
 }
 
 TEST(Interlock, silenceBeforeTheFirstStatusDoesNotCount)
@@ -158,7 +316,7 @@ TEST(Interlock, silenceBeforeTheFirstStatusDoesNotCount)
   Guarded belt;
   belt.command(0);
   belt.interlock.online(at(60000));
-  EXPECT_EQ(belt.interlock.judge(at(60100), publisher()), Permission::Locked);
+  EXPECT_EQ(belt.judge(60100), Permission::Locked);
 }
 
 TEST(Interlock, laterStatusesDoNotStartTheSilenceAgain)
@@ -177,16 +335,16 @@ TEST(Interlock, silenceLastsAtLeastHalfASecond)
 {
   Running belt(0.1);
   belt.stopAndConfirm(1200);
-  EXPECT_EQ(belt.interlock.judge(at(1699), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(1700), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(1699), Permission::Locked);
+  EXPECT_EQ(belt.judge(1700), Permission::Granted);
 }
 
 TEST(Interlock, silenceLastsAtLeastTheCommandTimeout)
 {
   Running belt(2.0);
   belt.stopAndConfirm(1200);
-  EXPECT_EQ(belt.interlock.judge(at(3199), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(3200), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(3199), Permission::Locked);
+  EXPECT_EQ(belt.judge(3200), Permission::Granted);
 }
 
 TEST(Interlock, silenceLastsTwiceTheSpacingOfTheLastCommands)
@@ -194,8 +352,8 @@ TEST(Interlock, silenceLastsTwiceTheSpacingOfTheLastCommands)
   Running belt(0.0);
   belt.command(2500);
   belt.stopAndConfirm(2700);
-  EXPECT_EQ(belt.interlock.judge(at(5699), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(5700), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(5699), Permission::Locked);
+  EXPECT_EQ(belt.judge(5700), Permission::Granted);
 }
 
 TEST(Interlock, silenceForASlowStreamLastsFiveSecondsAtMost)
@@ -203,8 +361,8 @@ TEST(Interlock, silenceForASlowStreamLastsFiveSecondsAtMost)
   Running belt(0.0);
   belt.command(21000);
   belt.stopAndConfirm(21200);
-  EXPECT_EQ(belt.interlock.judge(at(26199), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(26200), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(26199), Permission::Locked);
+  EXPECT_EQ(belt.judge(26200), Permission::Granted);
 }
 
 TEST(Interlock, streamOfOneCommandInTwoSecondsStaysRefused)
@@ -219,10 +377,10 @@ TEST(Interlock, silenceCountsFromTheConfirmationAndNotFromTheRequest)
 {
   Running belt;
   belt.interlock.stopRequested();
-  EXPECT_EQ(belt.interlock.judge(at(60000), publisher()), Permission::StopPending);
+  EXPECT_EQ(belt.judge(60000), Permission::StopPending);
   belt.interlock.stopConfirmed(at(60000));
-  EXPECT_EQ(belt.interlock.judge(at(60499), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(60500), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(60499), Permission::Locked);
+  EXPECT_EQ(belt.judge(60500), Permission::Granted);
 }
 
 TEST(Interlock, everyRefusedCommandStartsTheSilenceAgain)
@@ -230,7 +388,7 @@ TEST(Interlock, everyRefusedCommandStartsTheSilenceAgain)
   Running belt;
   belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.command(1600), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(1700), publisher()), Permission::Locked);
+  EXPECT_EQ(belt.judge(1700), Permission::Locked);
 }
 
 // --- return to neutral -----------------------------------------------------------------------------------------------
@@ -310,7 +468,7 @@ TEST(Interlock, commandsDuringAPendingStopAreRefusedAsCancelled)
   EXPECT_TRUE(belt.interlock.stopPending());
   EXPECT_EQ(belt.command(1100), Permission::StopPending);
   EXPECT_EQ(belt.command(1110, publisher("/joystick")), Permission::StopPending);
-  EXPECT_TRUE(belt.interlock.locked(at(1110)));
+  EXPECT_TRUE(belt.locked(1110));
 }
 
 TEST(Interlock, secondStopLocksAgain)
@@ -325,11 +483,11 @@ TEST(Interlock, secondStopLocksAgain)
 TEST(Interlock, isShownFreeOnceSomebodyHasReturnedToNeutral)
 {
   Running belt;
-  EXPECT_FALSE(belt.interlock.locked(at(1000)));
+  EXPECT_FALSE(belt.locked(1000));
   belt.stopAndConfirm(1200);
-  EXPECT_TRUE(belt.interlock.locked(at(1300)));
+  EXPECT_TRUE(belt.locked(1300));
   belt.zero(1310);
-  EXPECT_FALSE(belt.interlock.locked(at(1310)));
+  EXPECT_FALSE(belt.locked(1310));
 }
 
 TEST(Interlock, isShownLockedWhileARefusedStreamGoesOn)
@@ -337,8 +495,8 @@ TEST(Interlock, isShownLockedWhileARefusedStreamGoesOn)
   Running belt;
   belt.stopAndConfirm(1200);
   belt.stream(1300, 5000, 100);
-  EXPECT_TRUE(belt.interlock.locked(at(5000)));
-  EXPECT_FALSE(belt.interlock.locked(at(5500)));
+  EXPECT_TRUE(belt.locked(5000));
+  EXPECT_FALSE(belt.locked(5500));
 }
 
 // --- latched publishers ----------------------------------------------------------------------------------------------
@@ -422,7 +580,7 @@ TEST(Interlock, faultKeepsTheLock)
   belt.stopAndConfirm(1200);
   belt.zero(1300);
   EXPECT_EQ(belt.command(60000), Permission::Locked);
-  EXPECT_TRUE(belt.interlock.locked(at(60000)));
+  EXPECT_TRUE(belt.locked(60000));
   EXPECT_TRUE(belt.interlock.isFaulted());
 }
 
@@ -462,7 +620,7 @@ TEST(Interlock, offlineRefusesEveryCommand)
   EXPECT_TRUE(belt.interlock.isOffline());
   belt.zero(1100);
   EXPECT_EQ(belt.command(1200), Permission::Offline);
-  EXPECT_TRUE(belt.interlock.locked(at(1200)));
+  EXPECT_TRUE(belt.locked(1200));
 }
 
 TEST(Interlock, streamThatGoesOnAcrossAReturnIsRefused)
@@ -479,8 +637,8 @@ TEST(Interlock, silenceCountsFromTheReturnWhenNoStopIsPending)
   Running belt;
   belt.interlock.offline();
   belt.interlock.online(at(60000));
-  EXPECT_EQ(belt.interlock.judge(at(60499), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(60500), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(60499), Permission::Locked);
+  EXPECT_EQ(belt.judge(60500), Permission::Granted);
 }
 
 TEST(Interlock, returnDoesNotEndAPendingStop)
@@ -491,7 +649,7 @@ TEST(Interlock, returnDoesNotEndAPendingStop)
   belt.interlock.online(at(5000));
   EXPECT_EQ(belt.command(60000), Permission::StopPending);
   belt.interlock.stopConfirmed(at(61000));
-  EXPECT_EQ(belt.interlock.judge(at(61100), publisher()), Permission::Locked);
+  EXPECT_EQ(belt.judge(61100), Permission::Locked);
 }
 
 // --- command watchdog --------------------------------------------------------------------------------------------------------
@@ -519,7 +677,7 @@ TEST(Interlock, refusedCommandsDoNotFeedTheWatchdog)
   Running belt(0.5);
   for (int time = 1100; time < 1500; time += 50)
   {
-    belt.interlock.commanded(at(time), publisher(), false);
+    belt.interlock.commanded(at(time), publisher(), false, belt.holds);
   }
   EXPECT_TRUE(belt.interlock.watchdogDue(at(1500)));
 }
@@ -568,8 +726,8 @@ TEST(Interlock, commandTimeoutZeroLocksAllTheSame)
   belt.stopAndConfirm(1200);
   EXPECT_EQ(belt.stream(1250, 10000, 100), 0);
   // Its last message came at 9950 ms.
-  EXPECT_EQ(belt.interlock.judge(at(10449), publisher()), Permission::Locked);
-  EXPECT_EQ(belt.interlock.judge(at(10450), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(10449), Permission::Locked);
+  EXPECT_EQ(belt.judge(10450), Permission::Granted);
 }
 
 TEST(Interlock, watchdogLocksLikeAnyStop)
@@ -650,9 +808,9 @@ TEST(Interlock, nearZeroForAsLongAsSilenceUnlocks)
   belt.stopAndConfirm(2000);
   EXPECT_EQ(belt.command(2050), Permission::Locked);
   belt.nearZeros(2100, 2550, 50);
-  EXPECT_TRUE(belt.interlock.locked(at(2549)));
-  EXPECT_EQ(belt.interlock.judge(at(2549), publisher()), Permission::Locked);
-  EXPECT_FALSE(belt.interlock.locked(at(2550)));
+  EXPECT_TRUE(belt.locked(2549));
+  EXPECT_EQ(belt.judge(2549), Permission::Locked);
+  EXPECT_FALSE(belt.locked(2550));
   EXPECT_EQ(belt.command(2550), Permission::Granted);
 }
 
@@ -661,7 +819,7 @@ TEST(Interlock, nearZeroFromTheStartIsSilence)
   Guarded belt;
   belt.nearZeros(-1000, 500, 50);
   belt.interlock.online(at(0));
-  EXPECT_EQ(belt.interlock.judge(at(499), publisher()), Permission::Locked);
+  EXPECT_EQ(belt.judge(499), Permission::Locked);
   EXPECT_EQ(belt.command(500), Permission::Granted);
 }
 
@@ -702,7 +860,7 @@ TEST(Interlock, nearZeroLocksNobodyOut)
 {
   Running belt;
   belt.nearZeros(1100, 1200, 50);
-  EXPECT_FALSE(belt.interlock.locked(at(1200)));
+  EXPECT_FALSE(belt.locked(1200));
   EXPECT_EQ(belt.command(1200), Permission::Granted);
 }
 
@@ -722,7 +880,7 @@ TEST(Interlock, aPublisherThatOnlySentNearZeroNeedsNoLongerSilence)
   EXPECT_EQ(belt.command(1000), Permission::Granted);
   belt.stopAndConfirm(2000);
   // One command is no spacing: the longest of command_timeout and 0.5 s, not the 5 s of a publisher that is rarely heard.
-  EXPECT_EQ(belt.interlock.judge(at(3000), publisher()), Permission::Granted);
+  EXPECT_EQ(belt.judge(3000), Permission::Granted);
 }
 
 TEST(Interlock, aLatchedVelocityOfOneThatWasHeardNearZeroIsARepeat)

@@ -76,7 +76,7 @@ TEST_F(Mx2Report, aSingleLostExchangeIsShownBehindAllElse)
   EXPECT_EQ(wire::ERROR_DAMAGED, status().error_id);
   inverter_.command_error.failed(wire::ERROR_TIMEOUT, "writes are lost");
   EXPECT_THAT(status().error_text, HasSubstr("the last velocity was not carried out"));
-  inverter_.command_error.set(ERROR_OUT_OF_RANGE, "300 is above 50", inverter_.obstacles());
+  inverter_.command_error.set(ERROR_OUT_OF_RANGE, "300 is above 50", inverter_.obstacles(at(0)));
   EXPECT_EQ(ERROR_OUT_OF_RANGE, status().error_id);
   inverter_.lost_writes.raise();
   EXPECT_EQ(wire::ERROR_TIMEOUT, status().error_id) << "why it is locked says more than a refusal";
@@ -85,12 +85,12 @@ TEST_F(Mx2Report, aSingleLostExchangeIsShownBehindAllElse)
 
 TEST_F(Mx2Report, whyItIsOfflineSaysMoreThanARefusalBecauseItIs)
 {
-  inverter_.command_error.set(ERROR_LOCKED, lockedText(false), inverter_.obstacles());
+  inverter_.command_error.set(ERROR_LOCKED, lockedText(false), inverter_.obstacles(at(0)));
   loseExchange();
   loseExchange();
   EXPECT_TRUE(status().communication_error);
   EXPECT_EQ(wire::ERROR_TIMEOUT, status().error_id);
-  inverter_.command_error.set(ERROR_OUT_OF_RANGE, "300 is above 50", inverter_.obstacles());
+  inverter_.command_error.set(ERROR_OUT_OF_RANGE, "300 is above 50", inverter_.obstacles(at(0)));
   EXPECT_EQ(ERROR_OUT_OF_RANGE, status().error_id);
 }
 
@@ -146,7 +146,7 @@ TEST_F(Mx2Report, severalPublishersAreAWarning)
   {
     Publisher publisher;
     publisher.name = name;
-    inverter_.interlock.commanded(at(0), publisher, false);
+    inverter_.interlock.commanded(at(0), publisher, false, inverter_.holds());
   }
   EXPECT_THAT(findings(), Contains(warns("several publishers")));
   EXPECT_THAT(findings(60000), Not(Contains(warns("several publishers"))));

@@ -170,7 +170,7 @@ TEST_F(Mx2Inverter, goesOfflineAfterSoManyLostReadsAndForgetsWhatItHasTold)
   EXPECT_FALSE(inverter_.movement.target()) << "nothing is sent again when it is back";
   EXPECT_TRUE(inverter_.movement.runPossible()) << "nobody has seen it stop";
   EXPECT_FALSE(inverter_.services.resetting());
-  EXPECT_FALSE(inverter_.inSetup());
+  EXPECT_FALSE(inverter_.holds().in_setup);
   EXPECT_FALSE(inverter_.refresh.fresh().monitor.run_seen);
 }
 
@@ -201,7 +201,7 @@ TEST_F(Mx2Inverter, comesToRestForMovementAndWatchdog)
   run(20.0);
   Publisher publisher;
   publisher.name = "/user";
-  inverter_.interlock.commanded(at(time_), publisher, true);
+  inverter_.interlock.commanded(at(time_), publisher, true, inverter_.holds());
   ASSERT_TRUE(inverter_.mayRun());
   inverter_.cameToRest(at(time_));
   EXPECT_FALSE(inverter_.mayRun());
@@ -225,13 +225,13 @@ TEST_F(Mx2Inverter, repeatsNoWordsWhileAStopOrATripIsPending)
 TEST_F(Mx2Inverter, namesWhatStandsInTheWayOfAVelocity)
 {
   status(AT_REST);
-  EXPECT_FALSE(inverter_.obstacles().tripped);
+  EXPECT_FALSE(inverter_.obstacles(at(0)).tripped);
   inverter_.services.setupOpened();
-  EXPECT_TRUE(inverter_.obstacles().in_setup);
+  EXPECT_TRUE(inverter_.obstacles(at(0)).in_setup);
   status(TRIPPED);
-  EXPECT_TRUE(inverter_.obstacles().tripped);
+  EXPECT_TRUE(inverter_.obstacles(at(0)).tripped);
   inverter_.goOffline(wire::ERROR_TIMEOUT);
-  EXPECT_TRUE(inverter_.obstacles().offline);
+  EXPECT_TRUE(inverter_.obstacles(at(0)).offline);
 }
 
 /// An MX2 behind a Modbus TCP gateway.

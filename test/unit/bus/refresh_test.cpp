@@ -52,7 +52,7 @@ protected:
   /// The next read, answered 10 ms later as laid down. Returns the request.
   std::string exchange()
   {
-    const std::string request = printed(mx2_.read(1, refresh_.next(at(time_))));
+    const std::string request = printed(mx2_.read(1, refresh_.next(at(time_), leave_)));
     const int sent_at = time_;
     time_ += 10;
     const auto refusal = refused_.find(request);
@@ -85,6 +85,7 @@ protected:
 
   const drive::Drive mx2_ = shipped("omron_mx2");
   Refresh refresh_{ mx2_ };
+  SlowLeave leave_;
   int time_ = 0;
   bool more_ = false;
   /// Replies by request.
@@ -122,8 +123,9 @@ TEST_F(Mx2Refresh, eachLaterRefreshBringsAtMostOneSlowRead)
   EXPECT_THAT(refresh(), ElementsAre(COILS, REGISTERS));
 }
 
-TEST_F(Mx2Refresh, slowReadsComeAboutOnceASecond)
+TEST_F(Mx2Refresh, slowReadsComeOnceInTheirPeriod)
 {
+  leave_.period = Ms(2000);
   std::map<std::string, int> counts;
   while (time_ < 20000)
   {
@@ -134,11 +136,31 @@ TEST_F(Mx2Refresh, slowReadsComeAboutOnceASecond)
   }
   for (const std::string& slow : { WARNING, TORQUE_TO_TEMPERATURE, DC_VOLTAGE })
   {
-    EXPECT_THAT(counts[slow], AllOf(Ge(20), Le(27))) << slow;
+    EXPECT_THAT(counts[slow], AllOf(Ge(9), Le(10))) << slow;
   }
 }
 
-TEST_F(Mx2Refresh, slowValuesAreNeverMissingWhileTheCycleIsFast)
+TEST_F(Mx2Refresh, slowReadsWaitForTheirShareOfTheWire)
+{
+  leave_.open = false;
+  for (int count = 0; count < 10; ++count)
+  {
+    EXPECT_THAT(refresh(500), ElementsAre(COILS, REGISTERS));
+  }
+  leave_.open = true;
+  EXPECT_THAT(refresh(), ElementsAre(WARNING, COILS, REGISTERS));
+}
+
+TEST_F(Mx2Refresh, slowReadsNeverComeWithoutAPeriod)
+{
+  leave_.period = Duration{ 0 };
+  for (int count = 0; count < 10; ++count)
+  {
+    EXPECT_THAT(refresh(500), ElementsAre(COILS, REGISTERS));
+  }
+}
+
+TEST_F(Mx2Refresh, slowValuesAreNeverMissingWhileTheirPeriodIsShort)
 {
   while (time_ < 1000)
   {
@@ -159,6 +181,28 @@ TEST_F(Mx2Refresh, slowReadsTakeTurnsWhenTheCycleIsSlow)
   EXPECT_THAT(refresh(2000), Contains(TORQUE_TO_TEMPERATURE));
   EXPECT_THAT(refresh(2000), Contains(DC_VOLTAGE));
   EXPECT_THAT(refresh(2000), Contains(WARNING));
+}
+
+TEST_F(Mx2Refresh, warningWordIsReadNextWhenATripComesOrGoes)
+{
+  leave_.period = Ms(60000);
+  for (int count = 0; count < 5; ++count)
+  {
+    refresh();
+  }
+  ASSERT_THAT(refresh(), ElementsAre(COILS, REGISTERS));
+  answers_[COILS] = TRIPPED_COILS;
+  refresh();
+  EXPECT_TRUE(refresh_.asksForWarning(at(time_)));
+  leave_.open = false;
+  EXPECT_THAT(refresh(), ElementsAre(COILS, REGISTERS, FAULT)) << "within the share";
+  leave_.open = true;
+  EXPECT_THAT(refresh(), ElementsAre(WARNING, COILS, REGISTERS, FAULT));
+  EXPECT_FALSE(refresh_.asksForWarning(at(time_)));
+  EXPECT_THAT(refresh(), ElementsAre(COILS, REGISTERS, FAULT));
+  answers_[COILS] = RUNNING_COILS;
+  refresh();
+  EXPECT_THAT(refresh(), ElementsAre(WARNING, COILS, REGISTERS));
 }
 
 // --- values ----------------------------------------------------------------------------------------------------------
@@ -185,18 +229,22 @@ TEST_F(Mx2Refresh, whatWasNotReadYetIsNotKnown)
   EXPECT_FALSE(shown.torque);
 }
 
-TEST_F(Mx2Refresh, slowValuesLeaveTheStatusAfterOneSecond)
+TEST_F(Mx2Refresh, slowValuesLeaveTheStatusAfterTenSecondsOrTwoAndAHalfPeriods)
 {
   refresh();
   refresh();
   ASSERT_THAT(refresh(), Contains(TORQUE_TO_TEMPERATURE));
   const int read_at = time_ - 20;
-  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 1000)).output_voltage.value(), 200.5);
-  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 1000)).torque.value(), -5.0);
-  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 1000)).temperature.value(), 34.5);
-  EXPECT_FALSE(refresh_.monitor(at(read_at + 1001)).output_voltage);
-  EXPECT_FALSE(refresh_.monitor(at(read_at + 1001)).torque);
-  EXPECT_FALSE(refresh_.monitor(at(read_at + 1001)).temperature);
+  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 10000)).output_voltage.value(), 200.5);
+  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 10000)).torque.value(), -5.0);
+  EXPECT_DOUBLE_EQ(refresh_.monitor(at(read_at + 10000)).temperature.value(), 34.5);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 10001)).output_voltage);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 10001)).torque);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 10001)).temperature);
+  leave_.period = Ms(6000);
+  refresh();
+  EXPECT_TRUE(refresh_.monitor(at(read_at + 15000)).torque);
+  EXPECT_FALSE(refresh_.monitor(at(read_at + 15001)).torque);
 }
 
 TEST_F(Mx2Refresh, stampIsTheArrivalOfTheLastFastReply)
@@ -346,6 +394,23 @@ TEST_F(Mx2Refresh, refusedSingleValueIsLeftOutForHalfAMinute)
   time_ = 31000;
   EXPECT_THAT(refresh(), Contains(FREQUENCY));
   EXPECT_DOUBLE_EQ(monitor().output_frequency.value(), 50.0);
+}
+
+TEST_F(Mx2Refresh, readAcrossAHoleIsCutForGood)
+{
+  refused_[TORQUE_TO_TEMPERATURE] = 3;
+  for (int count = 0; count < 8; ++count)
+  {
+    refresh();
+  }
+  refresh_.forget();
+  Frames all;
+  for (int count = 0; count < 8; ++count)
+  {
+    const Frames frames = refresh();
+    all.insert(all.end(), frames.begin(), frames.end());
+  }
+  EXPECT_THAT(all, AllOf(Contains(TORQUE_AND_VOLTAGE), Contains(TEMPERATURE), Not(Contains(TORQUE_TO_TEMPERATURE))));
 }
 
 TEST_F(Mx2Refresh, refusedSlowBlockIsCutAtItsWidestGap)

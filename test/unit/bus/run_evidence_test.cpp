@@ -160,11 +160,13 @@ TEST_F(Vfs15Evidence, aRestartEndsWhatWasProven)
 
 TEST_F(Vfs15Evidence, whoCommandsIsAskedEveryFiveSecondsWhileOurRunIsInForce)
 {
-  EXPECT_TRUE(evidence_.takeSourceDue(at(200), movement_));
-  EXPECT_FALSE(evidence_.takeSourceDue(at(5199), movement_));
-  EXPECT_TRUE(evidence_.takeSourceDue(at(5200), movement_));
+  EXPECT_TRUE(evidence_.takeSourceDue(at(200), movement_, Ms(1000)));
+  EXPECT_FALSE(evidence_.takeSourceDue(at(5199), movement_, Ms(1000)));
+  EXPECT_TRUE(evidence_.takeSourceDue(at(5200), movement_, Ms(1000)));
+  EXPECT_FALSE(evidence_.takeSourceDue(at(12199), movement_, Ms(7000))) << "within the share of the slow values";
+  EXPECT_TRUE(evidence_.takeSourceDue(at(12200), movement_, Ms(7000)));
   movement_.stopped(at(6000));
-  EXPECT_FALSE(evidence_.takeSourceDue(at(60000), movement_));
+  EXPECT_FALSE(evidence_.takeSourceDue(at(60000), movement_, Ms(1000)));
 }
 }  // namespace
 }  // namespace bus

@@ -55,7 +55,8 @@ protected:
 drive::Drive mx2WithCoast()
 {
   drive::ProfileChanges changes;
-  changes.overrides_yaml = "{points: {free_run: {coil: 0x0009}}, sequences: {coast: [{free_run: 1}, {run: 0}]}}";
+  changes.overrides =
+      drive::overridesOf("{points: {free_run: {coil: 0x0009}}, sequences: {coast: [{free_run: 1}, {run: 0}]}}");
   return shipped("omron_mx2", changes);
 }
 

@@ -75,8 +75,8 @@ TEST_P(ScalarTest, isWhatRosparamMakesOfIt)
 
 INSTANTIATE_TEST_SUITE_P(
     Words, ScalarTest,
-    testing::Values(Case{ "", Type::Null }, Case{ "~", Type::Null }, Case{ "null", Type::Null },
-                    Case{ "Null", Type::Null }, Case{ "NULL", Type::Null }, Case{ "nULL", Type::Text },
+    testing::Values(Case{ "", Type::None }, Case{ "~", Type::None }, Case{ "null", Type::None },
+                    Case{ "Null", Type::None }, Case{ "NULL", Type::None }, Case{ "nULL", Type::Text },
                     Case{ "yes", Type::Boolean, 1 }, Case{ "Yes", Type::Boolean, 1 }, Case{ "YES", Type::Boolean, 1 },
                     Case{ "on", Type::Boolean, 1 }, Case{ "ON", Type::Boolean, 1 }, Case{ "true", Type::Boolean, 1 },
                     Case{ "True", Type::Boolean, 1 }, Case{ "no", Type::Boolean, 0 }, Case{ "No", Type::Boolean, 0 },
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{ "1__0", Type::Integer, 10 }, Case{ "_1", Type::Text }, Case{ "0x01", Type::Integer, 1 },
                     Case{ "0x1F", Type::Integer, 31 }, Case{ "-0x1f", Type::Integer, -31 },
                     Case{ "0x1_0", Type::Integer, 16 }, Case{ "0X1F", Type::Text }, Case{ "0xG", Type::Text },
-                    Case{ "0x_", Type::Integer, 0, "no number" }, Case{ "0b101", Type::Integer, 5 },
+                    Case{ "0x_", Type::Integer, 0, "not a number" }, Case{ "0b101", Type::Integer, 5 },
                     Case{ "0o10", Type::Text }, Case{ "08", Type::Text }, Case{ "09", Type::Text },
                     Case{ "010", Type::Integer, 8, "8 or 10" }, Case{ "0100", Type::Integer, 64, "64 or 100" },
                     Case{ "-010", Type::Integer, -8, "-8 or -10" }, Case{ "007", Type::Integer, 7, "allowed: 7" },
@@ -126,11 +126,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{ "rad(1.5)", Type::Number, 1.5 }, Case{ "rad(2**3)", Type::Number, 8.0 },
                     Case{ "rad(-2**2)", Type::Number, -4.0 }, Case{ "rad(1e3)", Type::Number, 1000.0 },
                     Case{ "rad(1+2*3)", Type::Number, 7.0 }, Case{ "rad((1+2)*3)", Type::Text },
-                    Case{ "rad()", Type::Number, 0, "no angle" }, Case{ "rad(1/0)", Type::Number, 0, "no angle" },
-                    Case{ "rad(exit)", Type::Number, 0, "no angle" }, Case{ "rad(2", Type::Text },
+                    Case{ "rad()", Type::Number, 0, "not an angle" },
+                    Case{ "rad(1/0)", Type::Number, 0, "not an angle" },
+                    Case{ "rad(exit)", Type::Number, 0, "not an angle" }, Case{ "rad(2", Type::Text },
                     Case{ "deg(90)", Type::Number, PI / 2 }, Case{ "deg(-90.0)", Type::Number, -PI / 2 },
-                    Case{ "deg(9e1)", Type::Number, PI / 2 }, Case{ "deg(90-1)", Type::Number, 0, "no angle" },
-                    Case{ "deg(pi)", Type::Number, 0, "no angle" }, Case{ "degrees(90)", Type::Text }));
+                    Case{ "deg(9e1)", Type::Number, PI / 2 }, Case{ "deg(90-1)", Type::Number, 0, "not an angle" },
+                    Case{ "deg(pi)", Type::Number, 0, "not an angle" }, Case{ "degrees(90)", Type::Text }));
 
 TEST(Scalar, notANumberIsANumber)
 {
@@ -158,7 +159,7 @@ TEST(Scalar, tagsSayWhatItIs)
   EXPECT_EQ(Type::Number, readScalar("3", yaml + "float").type);
   EXPECT_DOUBLE_EQ(100.0, readScalar("1e2", yaml + "float").number);
   EXPECT_TRUE(readScalar("YeS", yaml + "bool").boolean);
-  EXPECT_EQ(Type::Null, readScalar("x", yaml + "null").type);
+  EXPECT_EQ(Type::None, readScalar("x", yaml + "null").type);
   EXPECT_DOUBLE_EQ(2 * PI, readScalar("2*pi", "!radians").number);
   EXPECT_DOUBLE_EQ(9.0, readScalar("(1+2)*3", "!radians").number);
   EXPECT_DOUBLE_EQ(PI, readScalar("180", "!degrees").number);

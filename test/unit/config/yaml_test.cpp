@@ -5,8 +5,8 @@
 
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,35 +20,41 @@ namespace
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string problemsOf(const std::vector<YamlProblem>& problems)
+/// Every complaint as "line path: what", one line each.
+class Mistakes : public Complaints
 {
-  std::string text;
-  for (const YamlProblem& problem : problems)
+public:
+  void complain(const Spot& spot, const std::string& what) override
   {
-    text += std::to_string(problem.line) + " " + problem.path + ": " + problem.what + "\n";
+    text += spot.place + " " + spot.path + ": " + what + "\n";
   }
-  return text;
-}
+  std::string text;
+};
 
-/// The parameters that \p text makes; fails where it has problems.
+/// The parameters that \p text makes; fails where it has mistakes.
 Value parameters(const std::string& text)
 {
-  std::vector<YamlProblem> problems;
-  const auto tree = readYaml(text, problems);
-  const Value value = tree ? toParameters(*tree, problems) : Value();
-  EXPECT_EQ("", problemsOf(problems)) << text;
-  return value;
+  Mistakes mistakes;
+  const auto tree = readYaml(text, "", Purpose::Parameters, mistakes);
+  EXPECT_EQ("", mistakes.text) << text;
+  return tree.value_or(Value());
 }
 
 /// What is wrong with \p text as a scan list.
 std::string mistakes(const std::string& text)
 {
-  std::vector<YamlProblem> problems;
-  if (const auto tree = readYaml(text, problems))
-  {
-    toParameters(*tree, problems);
-  }
-  return problemsOf(problems);
+  Mistakes mistakes;
+  readYaml(text, "", Purpose::Parameters, mistakes);
+  return mistakes.text;
+}
+
+/// The value at \p key, which must be there.
+const Value& at(const Value& map, const std::string& key)
+{
+  static const Value NONE;
+  const Value* found = map.find(key);
+  EXPECT_NE(nullptr, found) << key;
+  return found == nullptr ? NONE : *found;
 }
 
 const char* const BASE = "base: &base {a: 1, b: 2}\nother: &other {b: 3, c: 4}\n";
@@ -58,38 +64,38 @@ TEST(YamlMerge, takesWhatTheMapItselfDoesNotSay)
   const Value value = parameters(std::string(BASE) + "map: {<<: *base, b: 7}\nlater: {b: 7, <<: *base}\n");
   for (const char* name : { "map", "later" })
   {
-    const auto& map = value.map.at(name).map;
-    EXPECT_EQ(2U, map.size());
-    EXPECT_EQ(1, map.at("a").integer);
-    EXPECT_EQ(7, map.at("b").integer) << name;
+    const Value& map = at(value, name);
+    EXPECT_EQ(2U, map.map.size());
+    EXPECT_EQ(1, at(map, "a").integer);
+    EXPECT_EQ(7, at(map, "b").integer) << name;
   }
 }
 
 TEST(YamlMerge, ofSeveralMapsTheFirstWins)
 {
-  const auto map = parameters(std::string(BASE) + "map: {<<: [*base, *other]}\n").map.at("map").map;
-  EXPECT_EQ(1, map.at("a").integer);
-  EXPECT_EQ(2, map.at("b").integer);
-  EXPECT_EQ(4, map.at("c").integer);
+  const Value map = at(parameters(std::string(BASE) + "map: {<<: [*base, *other]}\n"), "map");
+  EXPECT_EQ(1, at(map, "a").integer);
+  EXPECT_EQ(2, at(map, "b").integer);
+  EXPECT_EQ(4, at(map, "c").integer);
 }
 
 TEST(YamlMerge, goesThroughMapsThatMergeThemselves)
 {
-  const auto map =
-      parameters(std::string(BASE) + "middle: &middle {<<: *base, d: 5}\nmap: {<<: *middle}\n").map.at("map").map;
-  EXPECT_EQ(3U, map.size());
-  EXPECT_EQ(5, map.at("d").integer);
+  const Value map =
+      at(parameters(std::string(BASE) + "middle: &middle {<<: *base, d: 5}\nmap: {<<: *middle}\n"), "map");
+  EXPECT_EQ(3U, map.map.size());
+  EXPECT_EQ(5, at(map, "d").integer);
 }
 
 TEST(YamlMerge, doesNotReplaceMapsInside)
 {
-  const auto map = parameters("base: &base {in: {a: 1}}\nmap: {<<: *base, in: {b: 2}}\n").map.at("map").map;
-  EXPECT_EQ(0U, map.at("in").map.count("a"));
+  const Value map = at(parameters("base: &base {in: {a: 1}}\nmap: {<<: *base, in: {b: 2}}\n"), "map");
+  EXPECT_EQ(nullptr, at(map, "in").find("a"));
 }
 
 TEST(YamlMerge, inQuotesIsAKeyLikeAnyOther)
 {
-  EXPECT_EQ(1U, parameters("map: {'<<': 5}\n").map.at("map").map.count("<<"));
+  EXPECT_EQ(5, at(at(parameters("map: {'<<': 5}\n"), "map"), "<<").integer);
 }
 
 TEST(YamlMerge, ofSomethingElseIsRefused)
@@ -129,7 +135,7 @@ TEST(YamlDocument, whatIsNoYamlHasALine)
   EXPECT_THAT(mistakes(""), HasSubstr("is empty"));
   EXPECT_THAT(mistakes("# nothing but this\n"), HasSubstr("is empty"));
   EXPECT_THAT(mistakes("a: b\x01\n"), AllOf(HasSubstr("1 "), HasSubstr("control character")));
-  EXPECT_THAT(mistakes("a: 1\nb: \xFF\n"), AllOf(HasSubstr("2 "), HasSubstr("no UTF-8")));
+  EXPECT_THAT(mistakes("a: 1\nb: \xFF\n"), AllOf(HasSubstr("2 "), HasSubstr("not UTF-8")));
 }
 
 TEST(YamlDocument, tabsStandInTextsAndCommentsOnly)
@@ -151,8 +157,8 @@ TEST(YamlDocument, tabsStandInTextsAndCommentsOnly)
 
 TEST(YamlDocument, quotesEnd)
 {
-  EXPECT_THAT(mistakes("a: 1\nb: 'x\nc: 2\n"), AllOf(HasSubstr("2 "), HasSubstr("don't end")));
-  EXPECT_THAT(mistakes("a: \"x\\\"\n"), HasSubstr("don't end"));
+  EXPECT_THAT(mistakes("a: 1\nb: 'x\nc: 2\n"), AllOf(HasSubstr("2 "), HasSubstr("never closed")));
+  EXPECT_THAT(mistakes("a: \"x\\\"\n"), HasSubstr("never closed"));
   EXPECT_EQ("", mistakes("a: it's\n"));
   EXPECT_EQ("", mistakes("a: x\n  'y\n  \"z\nb: 1\n"));
   EXPECT_EQ("", mistakes("# it's \"\na: 1 # '\n"));
@@ -160,9 +166,9 @@ TEST(YamlDocument, quotesEnd)
 
 TEST(YamlDocument, linesOfWindowsAndAByteOrderMarkAreFine)
 {
-  EXPECT_EQ(2, parameters("\xEF\xBB\xBF"
-                          "a: 1\r\nb: 2\r\n")
-                   .map.at("b")
+  EXPECT_EQ(2, at(parameters("\xEF\xBB\xBF"
+                             "a: 1\r\nb: 2\r\n"),
+                  "b")
                    .integer);
 }
 
@@ -180,29 +186,51 @@ TEST(YamlParameters, onlyWhatRoslaunchCanLoad)
 
 TEST(YamlParameters, haveTheTypesOfTheParameterServer)
 {
-  const auto map = parameters("{a: 1, b: 1.0, c: '1', d: yes, e: 0x10, f: 1e3, g: text, h: [1, x], i: {j: off}}\n").map;
-  EXPECT_EQ(Value::Type::Integer, map.at("a").type);
-  EXPECT_EQ(Value::Type::Number, map.at("b").type);
-  EXPECT_EQ(Value::Type::Text, map.at("c").type);
-  EXPECT_TRUE(map.at("d").boolean);
-  EXPECT_EQ(16, map.at("e").integer);
-  EXPECT_EQ(Value::Type::Text, map.at("f").type);
-  EXPECT_EQ("text", map.at("g").text);
-  EXPECT_EQ("x", map.at("h").list.at(1).text);
-  EXPECT_FALSE(map.at("i").map.at("j").boolean);
+  const Value map = parameters("{a: 1, b: 1.0, c: '1', d: yes, e: 0x10, f: 1e3, g: text, h: [1, x], i: {j: off}}\n");
+  EXPECT_EQ(Value::Type::Integer, at(map, "a").type);
+  EXPECT_EQ(Value::Type::Number, at(map, "b").type);
+  EXPECT_EQ(Value::Type::Text, at(map, "c").type);
+  EXPECT_TRUE(at(map, "d").boolean);
+  EXPECT_EQ(16, at(map, "e").integer);
+  EXPECT_EQ(Value::Type::Text, at(map, "f").type);
+  EXPECT_EQ("text", at(map, "g").text);
+  EXPECT_EQ("x", at(map, "h").list.at(1).text);
+  EXPECT_FALSE(at(at(map, "i"), "j").boolean);
+}
+
+TEST(YamlParameters, areSortedAsTheParameterServerHasThem)
+{
+  const Value map = parameters("{b: 1, a: 2}\n");
+  EXPECT_EQ("a", map.map.at(0).key);
+  Mistakes none;
+  EXPECT_EQ("b", readYaml("{b: 1, a: 2}\n", "", Purpose::Profile, none).value_or(Value()).map.at(0).key);
+}
+
+TEST(YamlPlaces, areThoseOfTheKeys)
+{
+  Mistakes none;
+  const auto tree = readYaml("a: 1\nb:\n  c: [2,\n    3]\nd:\n", "some.yaml", Purpose::Profile, none);
+  ASSERT_TRUE(tree.has_value());
+  EXPECT_EQ("some.yaml:1", tree->place);
+  EXPECT_EQ("some.yaml:2", at(*tree, "b").place);
+  EXPECT_EQ("some.yaml:3", at(at(*tree, "b"), "c").place);
+  EXPECT_EQ("some.yaml:4", at(at(*tree, "b"), "c").list.at(1).place);
+  EXPECT_EQ("some.yaml:5", at(*tree, "d").place);
+  EXPECT_EQ("", none.text);
 }
 
 TEST(YamlTextFile, saysWhyItCantBeRead)
 {
-  std::string error;
-  EXPECT_FALSE(readTextFile("/nonexistent/file.yaml", error));
-  EXPECT_THAT(error, HasSubstr("cannot be read: No such file"));
-  EXPECT_FALSE(readTextFile("/", error));
-  EXPECT_THAT(error, HasSubstr("not a regular file"));
+  const auto mistake_in = [](const std::string& path) {
+    Mistakes mistakes;
+    EXPECT_FALSE(readYamlFile(path, Purpose::Profile, mistakes).has_value());
+    return mistakes.text;
+  };
+  EXPECT_THAT(mistake_in("/nonexistent/file.yaml"), HasSubstr("/nonexistent/file.yaml : cannot be read: No such file"));
+  EXPECT_THAT(mistake_in("/"), HasSubstr("not a regular file"));
   const std::string path = testing::TempDir() + "config_yaml_test_large.yaml";
   std::ofstream(path) << std::string(LARGEST_YAML + 1, ' ');
-  EXPECT_FALSE(readTextFile(path, error));
-  EXPECT_THAT(error, HasSubstr("1 MiB"));
+  EXPECT_THAT(mistake_in(path), HasSubstr("1 MiB"));
   std::remove(path.c_str());
 }
 }  // namespace

@@ -35,7 +35,7 @@ wire::Bytes response(const std::string& characters)
 ProfileChanges overriding(const std::string& yaml)
 {
   ProfileChanges changes;
-  changes.overrides_yaml = yaml;
+  changes.overrides = overridesOf(yaml);
   return changes;
 }
 

@@ -193,8 +193,8 @@ TEST_F(DriveParameters, MonitorsCanBeReadButNotWritten)
   EXPECT_EQ(d001.item.unit, "Hz");
   EXPECT_EQ(mx2_.decodeParameter(d001, bytes("03 04 00 00 13 88")), 50.0);
   EXPECT_FALSE(mx2_.findParameter("d001", true).has_value());
-  EXPECT_THAT(encode(d001, 1.0).error, HasSubstr("read only"));
-  EXPECT_THAT(mx2_.parameterRefusal("d001", true), HasSubstr("read only"));
+  EXPECT_THAT(encode(d001, 1.0).error, HasSubstr("read-only"));
+  EXPECT_THAT(mx2_.parameterRefusal("d001", true), HasSubstr("read-only"));
   EXPECT_EQ(mx2_.parameterRefusal("d001", false), "");
 }
 

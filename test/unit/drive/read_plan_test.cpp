@@ -123,7 +123,7 @@ TEST(DriveReadPlan, NoReadOfAShippedProfileExceedsItsLimits)
   {
     ProfileChanges changes;
     changes.confirm = { "all" };
-    changes.overrides_yaml = name == "teco_7200ma" ? "{monitor_base: 0x0020}" : "";
+    changes.overrides = overridesOf(name == "teco_7200ma" ? "{monitor_base: 0x0020}" : "{}");
     const Drive drive = shipped(name, changes);
     ASSERT_FALSE(drive.fastBlocks().empty()) << name;
     for (const ReadBlock& block : allBlocks(drive))

@@ -33,11 +33,11 @@ std::vector<std::string> armed(const Drive& drive)
   return names;
 }
 
-ProfileChanges changes(const std::vector<std::string>& confirm, const std::string& overrides = "")
+ProfileChanges changes(const std::vector<std::string>& confirm, const std::string& overrides = "{}")
 {
   ProfileChanges result;
   result.confirm = confirm;
-  result.overrides_yaml = overrides;
+  result.overrides = overridesOf(overrides);
   return result;
 }
 
@@ -320,7 +320,7 @@ TEST(DriveShippedProfiles, RunIsTheLastStepAndTheStopTheFirstEverywhere)
   const std::string codes = "operation_codes: {run_forward: \"AB01\", run_reverse: \"AB02\", stop: \"AB00\"}";
   for (const std::string& name : knownProfiles(profileDirectory()))
   {
-    const std::string given = name == "omron_3g3je" ? codes : name == "teco_7200ma" ? "reverse_word: 2" : "";
+    const std::string given = name == "omron_3g3je" ? codes : name == "teco_7200ma" ? "reverse_word: 2" : "{}";
     const Drive drive = shipped(name, changes({ "all" }, given));
     for (const char* motion : { "forward", "reverse" })
     {

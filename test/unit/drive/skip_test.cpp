@@ -135,7 +135,7 @@ TEST(DriveSkip, AReadOfChosenWordsDoesNotBringItEither)
 TEST(DriveSkip, AFieldThatOverridesDescribeCanBeSkippedToo)
 {
   ProfileChanges changes = skipping({ "temperature" });
-  changes.overrides_yaml = "status: {temperature: {register: 0x1019, resolution: 1, unit: degC}}";
+  changes.overrides = overridesOf("status: {temperature: {register: 0x1019, resolution: 1, unit: degC}}");
   EXPECT_FALSE(shipped("omron_mx2", changes).reports("temperature"));
 }
 
@@ -225,7 +225,7 @@ TEST(DriveUnits, OverridesAreJudgedToo)
 {
   ProfileChanges changes;
   changes.place = "~scan_list[0] (belt)";
-  changes.overrides_yaml = "status: {output_current: {resolution: 10, unit: mA}}";
+  changes.overrides = overridesOf("status: {output_current: {resolution: 10, unit: mA}}");
   const Drive drive = shipped("omron_mx2", changes);
   EXPECT_FALSE(drive.reports("output_current"));
   EXPECT_TRUE(drive.reports("output_frequency"));

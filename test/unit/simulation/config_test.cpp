@@ -90,8 +90,12 @@ TEST(SimulatedBusConfig, errorsNameKeyValueAndWhatIsAllowed)
   }
   EXPECT_NE(std::string::npos, models.find("omron_mx2, omron_rx, "));
   EXPECT_EQ(
-      "drive: foo of a can't be simulated (allowed: " + models + "or one of them, or profile, as simulation/a/model)",
+      "drive: foo of a can't be simulated (allowed: " + models + "or one of them, or profile, as simulation.a.model)",
       errorOf("scan_list: [{name: a, node: 1, drive: foo}]"));
+  EXPECT_EQ("simulation.a.load: 5 (allowed: a number from 0 to 3)",
+            errorOf("scan_list: [{name: a, node: 1, drive: omron_mx2}]\nsimulation: {a: {load: 5}}"));
+  EXPECT_EQ("scan_list[0].node: nothing (allowed: an integer from 0 to 255)",
+            errorOf("scan_list: [{name: a, drive: omron_mx2}]"));
   EXPECT_EQ("a: omron_rx has no station 33 (1-32)", errorOf("scan_list: [{name: a, node: 33, drive: omron_rx}]"));
   EXPECT_EQ("a: omron_rx has no baud rate 38400 (2400-19200)",
             errorOf("baud_rate: 38400\nscan_list: [{name: a, node: 1, drive: omron_rx}]"));

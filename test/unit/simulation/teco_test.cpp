@@ -153,7 +153,7 @@ TEST(SimulatedTeco, refusesWhatItDoesNotHave)
             error("stop_bits: 2\nscan_list: [{name: t, node: 1, drive: teco_7200ma}]"));
   EXPECT_EQ("t: teco_7200ma has no station 32 (1-31)", error(oneTeco("Cn-27: 0", "", 32)));
   EXPECT_EQ("t: teco_7200ma: monitor_base 1 (allowed: 2 to 752)", error(oneTeco("Cn-27: 0", "monitor_base: 1")));
-  EXPECT_EQ("simulation/t/reverse_word: 4 (allowed: 2, 3)", error(oneTeco("Cn-27: 0", "reverse_word: 4")));
+  EXPECT_EQ("simulation.t.reverse_word: 4 (allowed: 2, 3)", error(oneTeco("Cn-27: 0", "reverse_word: 4")));
 }
 
 TEST(SimulatedTeco, monitors)

@@ -703,7 +703,7 @@ TEST_F(TcpPortSlowName, isWaitedForOneSecondAndTakenLater)
   const Server server;
   const auto port = makePort("gateway", server.port(), resolver());
   EXPECT_LE(timeToOpen(*port, OpenResult::NotThere), OPENING_BOUND);
-  EXPECT_EQ("cannot connect to tcp://gateway: no answer yet to the look-up of its name", error_);
+  EXPECT_EQ("cannot connect to tcp://gateway: its name has not been resolved yet", error_);
   EXPECT_LE(timeToOpen(*port, OpenResult::NotThere), OPENING_BOUND);
   EXPECT_EQ(1, *calls_) << "one look-up at a time";
   answer();
@@ -900,25 +900,25 @@ TEST_P(BadTcpAddress, isRefusedWithItsReason)
 const BadAddress BAD[] = {
   { "", "the host is missing" },
   { ":502", "the host is missing" },
-  { "host:", "behind the host comes a colon and a port number from 1 to 65535, not ':'" },
-  { "host:0", "behind the host comes a colon and a port number from 1 to 65535, not ':0'" },
-  { "host:65536", "behind the host comes a colon and a port number from 1 to 65535, not ':65536'" },
+  { "host:", "the host must be followed by a colon and a port number from 1 to 65535, not ':'" },
+  { "host:0", "the host must be followed by a colon and a port number from 1 to 65535, not ':0'" },
+  { "host:65536", "the host must be followed by a colon and a port number from 1 to 65535, not ':65536'" },
   { "host:99999999999999999999",
-    "behind the host comes a colon and a port number from 1 to 65535, not ':99999999999999999999'" },
-  { "host:+1", "behind the host comes a colon and a port number from 1 to 65535, not ':+1'" },
-  { "host:502/x", "behind the host comes a colon and a port number from 1 to 65535, not ':502/x'" },
-  { "[::1]502", "behind the host comes a colon and a port number from 1 to 65535, not '502'" },
+    "the host must be followed by a colon and a port number from 1 to 65535, not ':99999999999999999999'" },
+  { "host:+1", "the host must be followed by a colon and a port number from 1 to 65535, not ':+1'" },
+  { "host:502/x", "the host must be followed by a colon and a port number from 1 to 65535, not ':502/x'" },
+  { "[::1]502", "the host must be followed by a colon and a port number from 1 to 65535, not '502'" },
   { "::1", "an IPv6 address is written in brackets: [::1]:502" },
   { "fe80::1:502", "an IPv6 address is written in brackets: [::1]:502" },
   { "[::1", "a closing bracket is missing" },
-  { "[]:502", "'' is no IPv6 address" },
-  { "[gateway]:502", "'gateway' is no IPv6 address" },
-  { "[127.0.0.1]", "'127.0.0.1' is no IPv6 address" },
-  { "300.0.0.1", "'300.0.0.1' is no IPv4 address" },
-  { "10.1", "'10.1' is no IPv4 address" },
-  { "//host", "'//host' is no host name" },
-  { "user@host", "'user@host' is no host name" },
-  { "ho st", "'ho st' is no host name" },
+  { "[]:502", "'' is not an IPv6 address" },
+  { "[gateway]:502", "'gateway' is not an IPv6 address" },
+  { "[127.0.0.1]", "'127.0.0.1' is not an IPv6 address" },
+  { "300.0.0.1", "'300.0.0.1' is not an IPv4 address" },
+  { "10.1", "'10.1' is not an IPv4 address" },
+  { "//host", "'//host' is not a host name" },
+  { "user@host", "'user@host' is not a host name" },
+  { "ho st", "'ho st' is not a host name" },
 };
 
 INSTANTIATE_TEST_SUITE_P(forms, BadTcpAddress, testing::ValuesIn(BAD));

@@ -57,7 +57,7 @@ public:
     : dice_(number * 7919U + 17U)
     , limits_dice_(number * 104729U + 29U)
     , slow_dice_(number * 15485863U + 43U)
-    , feed_dice_(number * 32452843U + 7U)
+    , later_dice_(number * 32452843U + 41U)
   {
     scene_.name = name;
   }
@@ -260,6 +260,22 @@ private:
       // The RX's register of C078 is printed for the MX2 only: without confirmation it can't be read.
       facts.own_delay = facts.drive == "omron_mx2" ? facts.own_delay : 0.0;
     }
+    if (scene_.name == "mx2" && later_dice_.hits(0.6))
+    {
+      addMap(facts, parameters, more);
+    }
+  }
+
+  /// A register map that is in effect, one that the driver sets up and that counts from the drive's next power-on, or one that is
+  /// in other use. Dice of its own: what else happens on a bus does not depend on it.
+  void addMap(InverterFacts& facts, std::ostringstream& parameters, std::string& more)
+  {
+    facts.map = true;
+    more += ", confirm: [register_map]";
+    const double kind = later_dice_.between(0.0, 1.0);
+    const char* const fits = ", P200: 1, P201: 0x1005, P301: 0x1E01, P202: 0x1006, P302: 0x1F01";
+    more += kind < 0.4 ? "" : ", configure_map: true";
+    parameters << (kind < 0.4 ? fits : (kind > 0.9 ? ", P200: 1, P201: 0x4001, P301: 0x1212" : ""));
   }
 
   void setUpToshiba(InverterFacts& facts, std::ostringstream& parameters, std::string& more)
@@ -271,7 +287,7 @@ private:
     facts.free_parameter = "ACC";
     parameters << "ACC: 1.0, dEC: " << facts.fixed_value;
     more = ", drive: toshiba_vfs15";
-    facts.fed_by_word = feed_dice_.hits(0.4);
+    facts.fed_by_word = later_dice_.hits(0.4);
     facts.block = scene_.name == "toshiba_block" || (scene_.name == "mixed" && dice_.hits(0.5));
     if (facts.block)
     {
@@ -298,16 +314,13 @@ private:
       more += std::string(", overrides: {") + (facts.fed_by_word ? "feeds: command_word, " : "") +
               "status: {faulted: {register: 0xFC90, values: {\"0\": 0, \"1\": 1, \"2\": 1}}}}";
     }
-    else if (facts.fed_by_word)
-    {
-      more += ", overrides: {feeds: command_word}";
-    }
+    more += facts.fed_by_word && facts.listed_trips.empty() ? ", overrides: {feeds: command_word}" : "";
   }
 
   Dice dice_;
   Dice limits_dice_;
   Dice slow_dice_;
-  Dice feed_dice_;
+  Dice later_dice_;
   bool limits_ = false;
   bool all_saturate_ = false;
   Scene scene_;

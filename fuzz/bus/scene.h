@@ -40,6 +40,7 @@ struct InverterFacts
   double drive_timeout = 0.0;     ///< [s] C077, F803, Cn-27; 0: none
   bool block = false;             ///< VF-S15 whose block read and write are selected
   bool fed_by_word = false;       ///< its profile says that only the command word feeds its own time-out
+  bool map = false;               ///< MX2 whose register map is to be used
   double max_velocity = 0.0;      ///< [user's unit] 0: the profile's
   double min_velocity = 0.0;      ///< [user's unit]
   bool saturates = false;         ///< limit: saturate; has a max_velocity then

@@ -15,6 +15,7 @@ namespace drive
 {
 namespace
 {
+constexpr unsigned COILS_PER_WORD = 16;
 constexpr unsigned LEAST_WORDS = 2;  // VF-S15: E6581913 p27, 2 to 5 words
 
 const Item* itemOf(const Profile& profile, int code)
@@ -95,6 +96,73 @@ std::optional<ReadBlock> Drive::chosenRead(const std::vector<int>& codes) const
   return last == 0 ? std::nullopt : std::optional<ReadBlock>(block);
 }
 
+std::optional<ReadBlock> Drive::mappedRead() const
+{
+  if (!profile_.map || !profile_.map->unconfirmed.empty())
+  {
+    return std::nullopt;
+  }
+  const RegisterMap& map = *profile_.map;
+  ReadBlock block = blockAround(map.read);
+  block.mirrors = map.words;
+  const auto mirrored = [&block](unsigned coil) {
+    return std::any_of(block.mirrors.begin(), block.mirrors.end(), [coil](const MirroredCoils& word) {
+      return coil >= word.first_coil && coil < word.first_coil + COILS_PER_WORD;
+    });
+  };
+  const auto hidden = [&block](unsigned number) {
+    return std::any_of(block.mirrors.begin(), block.mirrors.end(),
+                       [number](const MirroredCoils& word) { return word.number == number; });
+  };
+  for (const auto& [field, item] : profile_.status)
+  {
+    bool there = item.unconfirmed.empty() && profile_.slow.count(field) == 0 && profile_.when_faulted.count(field) == 0;
+    for (unsigned number = item.number; number < item.number + item.size; ++number)
+    {
+      const bool in_read = number >= block.number && number < block.number + block.count && !hidden(number);
+      there = there && (item.space == Space::Coil ? mirrored(number) : item.space == Space::Register && in_read);
+    }
+    if (there)
+    {
+      block.fields.push_back(field);
+    }
+  }
+  return block;
+}
+
+std::vector<ReadBlock> Drive::mapTableReads() const
+{
+  std::map<std::uint16_t, ReadBlock> by_number;
+  for (const auto& entry : profile_.map ? profile_.map->table : std::vector<std::pair<std::string, std::uint32_t>>())
+  {
+    const Item& item = profile_.parameters.at(entry.first).item;
+    by_number[item.number] = blockAround(item);
+  }
+  std::vector<ReadBlock> reads;
+  for (const auto& [number, block] : by_number)
+  {
+    const bool follows = !reads.empty() && reads.back().number + reads.back().count == number &&
+                         reads.back().count < profile_.read_registers;
+    if (follows)
+    {
+      ++reads.back().count;
+    }
+    else
+    {
+      reads.push_back(block);
+    }
+  }
+  return reads;
+}
+
+std::optional<std::uint32_t> Drive::mapEntry(const std::string& name, const ReadBlock& block,
+                                             const wire::Bytes& reply) const
+{
+  const Item& item = profile_.parameters.at(name).item;
+  const bool there = item.number >= block.number && item.number < block.number + block.count;
+  return there ? extractRaw(item, block, reply, profile_) : std::nullopt;
+}
+
 std::vector<ReadBlock> Drive::fastBlocksBeside(const ReadBlock& block) const
 {
   return planBeside(profile_, block, false);
@@ -108,6 +176,10 @@ std::vector<ReadBlock> Drive::slowBlocksBeside(const ReadBlock& block) const
 std::optional<ReadBlock> Drive::variantOf(const ReadBlock& block) const
 {
   ReadBlock variant = block;
+  if (!block.mirrors.empty())
+  {
+    return std::nullopt;
+  }
   if (!block.chosen.empty())
   {
     --variant.count;

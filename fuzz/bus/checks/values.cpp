@@ -21,6 +21,7 @@ constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may
 constexpr double KEPT_SAMPLES_S = 120.0;
 constexpr double OLDEST_SLOW_VALUE_S = 10.0;  // contract, 8.3: in any case, and so many periods
 constexpr double OLDEST_SLOW_VALUE_PERIODS = 2.5;
+constexpr double LONG_TURNING_S = 0.5;
 constexpr double TORQUE_TOLERANCE = 1.5;  // [%] of rated: drives report whole percents
 constexpr double MEMORY_OF_LATE_S = 2.0;  // the longest bar, and the exchange that it lets through
 }  // namespace
@@ -72,6 +73,8 @@ void Values::sample(TimePoint now, std::size_t index)
 {
   std::deque<Sample>& samples = lanes_[index].samples;
   const Truth seen = plant_.truth(index);
+  std::optional<TimePoint>& since = lanes_[index].turning_since;
+  since = seen.hertz > 0.0 ? since.value_or(now) : std::optional<TimePoint>();
   if (seen.torque)
   {
     samples.push_back({ now, *seen.torque });
@@ -121,7 +124,23 @@ void Values::check(TimePoint now, const bus::InverterStatus& status)
   sample(now, status.index);
   checkStamp(now, status);
   checkFrequency(now, status);
+  checkRunning(now, status);
   checkTorque(now, status);
+}
+
+/// Of drives whose running bit follows the motor. It may be read a moment before the frequency: only a motor that has been
+/// turning for long counts.
+void Values::checkRunning(TimePoint now, const bus::InverterStatus& status) const
+{
+  const std::optional<TimePoint>& since = lanes_[status.index].turning_since;
+  const bool follows = observed_.scene.inverters[status.index].brand == Brand::HITACHI;
+  const bool long_enough = follows && since && status.has_stamp && status.stamp - *since > seconds(LONG_TURNING_S);
+  if (long_enough && !status.monitor.running.value_or(true))
+  {
+    fail(now, "a motor that turns is not shown at rest",
+         observed_.scene.title(status.index) + ": running is false, and the motor has been turning for " +
+             decimal(toSeconds(status.stamp - *since)) + " s");
+  }
 }
 
 void Values::checkStamp(TimePoint now, const bus::InverterStatus& status) const

@@ -18,7 +18,7 @@ namespace fuzz
 namespace checks
 {
 /// Rule 3.9 and contract, section 2: what is published is the motor's. Each stamp is the end of a reply that was waited
-/// for, the frequency is that of this exchange, and slow values are not too old (8.3).
+/// for, the frequency is that of this exchange, slow values are not too old (8.3), and a motor that turns is not shown at rest.
 class Values
 {
 public:
@@ -60,11 +60,14 @@ private:
     double least = 0.0;
     double most = 0.0;
     int sign = 0;
+    /// Empty: it stands.
+    std::optional<TimePoint> turning_since;
   };
 
   void widen(std::size_t index);
   void checkStamp(TimePoint now, const bus::InverterStatus& status) const;
   void checkFrequency(TimePoint now, const bus::InverterStatus& status);
+  void checkRunning(TimePoint now, const bus::InverterStatus& status) const;
   void checkTorque(TimePoint now, const bus::InverterStatus& status) const;
 
   const Observed& observed_;

@@ -49,6 +49,7 @@ struct InverterConfig
   std::optional<double> rated_voltage;
   bool configure_block = false;
   std::vector<int> block_read{ 1, 2, 3, 4, 14 };
+  bool configure_map = false;
   bool stop_unexpected_motion = false;
   bool release_on_exit = false;
   Limit limit = Limit::Refuse;  ///< resolved: entry, bus

@@ -64,6 +64,8 @@ struct ReadBlock
   std::vector<std::string> fields;
   /// Printed number of each word where the drive's user chose them (block read); empty: they follow each other. 0: none.
   std::vector<std::uint16_t> chosen;
+  /// Registers of it that hold coils (map).
+  std::vector<MirroredCoils> mirrors;
 };
 
 /// A point and the raw value that goes there.
@@ -125,6 +127,14 @@ public:
   /// The read of the words that \p codes select, with the status fields that it brings; empty: the drive has none, a code
   /// is unknown, or none of them selects anything.
   std::optional<ReadBlock> chosenRead(const std::vector<int>& codes) const;
+  /// The read that brings what the drive's map lays side by side, with its status fields; empty: there is none, or it is not
+  /// confirmed that the drive answers it.
+  std::optional<ReadBlock> mappedRead() const;
+  /// The reads that bring all parameters of the map.
+  std::vector<ReadBlock> mapTableReads() const;
+  /// What \p reply, of one of these, says of the map's parameter \p name; empty: it is in another one.
+  std::optional<std::uint32_t> mapEntry(const std::string& name, const ReadBlock& block,
+                                        const wire::Bytes& reply) const;
   /// Fast or slow reads of the fields that \p block doesn't bring.
   std::vector<ReadBlock> fastBlocksBeside(const ReadBlock& block) const;
   std::vector<ReadBlock> slowBlocksBeside(const ReadBlock& block) const;

@@ -225,6 +225,25 @@ struct Block
   std::uint32_t apply_value = 0;
 };
 
+/// A register of the drive's map that holds sixteen coils: bit n is coil \ref first_coil + n.
+struct MirroredCoils
+{
+  std::uint16_t number = 0;      ///< of the register, as printed
+  std::uint16_t first_coil = 0;  ///< as printed
+};
+
+/// The drive lets its owner lay registers over others (MX2: P200), so that one read brings what lies apart (section `map`).
+struct RegisterMap
+{
+  Item read;
+  std::vector<MirroredCoils> words;
+  /// What each parameter of the map must be, in the order of the profile. The last one switches the map on.
+  std::vector<std::pair<std::string, std::uint32_t>> table;
+  /// Empty, or the name under which it is unconfirmed that the drive answers such a read. It shows only where somebody wants
+  /// the map.
+  std::string unconfirmed;
+};
+
 /// What the drive does when the bus falls silent.
 struct CommunicationLoss
 {
@@ -303,6 +322,7 @@ struct Profile
   /// What is read in a refresh when no field of \ref status can be.
   std::optional<Item> keep_alive;
   std::optional<Block> block;
+  std::optional<RegisterMap> map;
   /// Parameters that hold the ratings [A, V]; empty: none, or not confirmed.
   std::string rated_current_parameter;
   std::string rated_voltage_parameter;

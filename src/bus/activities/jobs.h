@@ -227,6 +227,26 @@ private:
   std::string refused_;
 };
 
+/// Writes the parameters of the drive's register map, and stores them (MX2: P201-P310, P200, Enter), once.
+class ConfigureMapJob : public WriteParameterJob
+{
+public:
+  /// \p wanted, not empty: parameters and raw values in the order of writing. \p ram_changes as for WriteParameterJob.
+  ConfigureMapJob(const drive::Drive& drive, std::uint8_t station,
+                  std::vector<std::pair<std::string, std::uint32_t>> wanted, std::set<std::string>& ram_changes);
+  wire::Request next() override;
+  Progress done(const wire::Reply& reply) override;
+  bool needsRest() const override;
+  Aftermath aftermath() const override;
+
+private:
+  bool last() const;
+
+  std::vector<std::pair<std::string, std::uint32_t>> wanted_;
+  std::set<std::string>& written_;
+  std::size_t place_ = 0;
+};
+
 /// Selects the words of the block read and write in the drive (VF-S15: F870-F879, then F899), once.
 class ConfigureBlockJob : public Job
 {

@@ -224,6 +224,63 @@ Job::Progress WriteParameterJob::stored()
   return succeed("stored in the EEPROM with every other RAM change of this drive; made here: " + names);
 }
 
+// --- register map ----------------------------------------------------------------------------------------------------
+
+ConfigureMapJob::ConfigureMapJob(const drive::Drive& drive, std::uint8_t station,
+                                 std::vector<std::pair<std::string, std::uint32_t>> wanted,
+                                 std::set<std::string>& ram_changes)
+  : WriteParameterJob(drive, station, *drive.findParameter(wanted.back().first, true), wanted.back().second, true,
+                      ram_changes)
+  , wanted_(std::move(wanted))
+  , written_(ram_changes)
+{
+}
+
+/// The last one is written and stored as any parameter is.
+bool ConfigureMapJob::last() const
+{
+  return place_ + 1 >= wanted_.size();
+}
+
+wire::Request ConfigureMapJob::next()
+{
+  const auto& entry = wanted_[place_];
+  return last() ? WriteParameterJob::next()
+                : drive_.writeParameter(station_, *drive_.findParameter(entry.first, true), entry.second);
+}
+
+Job::Progress ConfigureMapJob::done(const wire::Reply& reply)
+{
+  if (!last() && reply.outcome == wire::Outcome::Exception)
+  {
+    return refusedByDrive(reply, "writing " + wanted_[place_].first);
+  }
+  if (!last())
+  {
+    written_.insert(wanted_[place_].first);
+    ++place_;
+    return Progress::GoesOn;
+  }
+  const Progress progress = WriteParameterJob::done(reply);
+  if (progress == Progress::Done && answer().success)
+  {
+    answer().message += "; switch the drive off and on: its register map counts from then";
+  }
+  return progress;
+}
+
+bool ConfigureMapJob::needsRest() const
+{
+  return true;
+}
+
+Aftermath ConfigureMapJob::aftermath() const
+{
+  Aftermath aftermath;
+  aftermath.logged_as = "configure_map";
+  return aftermath;
+}
+
 // --- block read and write --------------------------------------------------------------------------------------------
 
 ConfigureBlockJob::ConfigureBlockJob(const drive::Drive& drive, std::uint8_t station,

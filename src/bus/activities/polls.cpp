@@ -25,7 +25,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
   const bool resync = inverter.loopbackUsable() && inverter.drive.loopback(inverter.config.node, 0);
-  drive::ReadBlock block = inverter.refresh.next(now, turns_.slowLeave(now, inverter));
+  drive::ReadBlock block = turns_.nextRead(now, inverter);
   current.request = inverter.drive.read(inverter.config.node, block);
   while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {

@@ -115,6 +115,15 @@ void Services::writeParameter(TimePoint now, std::size_t index, const std::strin
         serviceBounds(bus_).write_parameter, std::move(callback));
 }
 
+void Services::configureMap(TimePoint now, std::size_t index,
+                            const std::vector<std::pair<std::string, std::uint32_t>>& wanted)
+{
+  const Inverter& inverter = *bus_.inverters[index];
+  start(now, index,
+        std::make_unique<ConfigureMapJob>(inverter.drive, inverter.config.node, wanted, ram_changes_[index]),
+        serviceBounds(bus_).write_parameter, AnswerCallback());
+}
+
 /// A brand or model that the profile is not for: what it would do with these requests, nobody knows.
 bool Services::refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback)
 {

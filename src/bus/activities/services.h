@@ -30,6 +30,8 @@ public:
   void writeParameter(TimePoint now, std::size_t index, const std::string& name, double value, bool persist,
                       AnswerCallback callback);
   /// \p bound [s] from now on; \p callback may be empty.
+  /// Nobody waits for it: the parameters of the register map and their raw values, not empty, in the order of writing.
+  void configureMap(TimePoint now, std::size_t index, const std::vector<std::pair<std::string, std::uint32_t>>& wanted);
   void start(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound, AnswerCallback callback);
 
   // --- exchanges ------------------------------------------------------------------------------------------------------

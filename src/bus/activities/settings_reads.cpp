@@ -34,6 +34,7 @@ void SettingsReads::ended(const InFlight& current, const wire::Reply& reply)
     // Before a status it took the refresh's turn, and gives it back.
     turns_.finish(current, reply, current.pick.what == Pick::What::Connect);
     configureBlock(reply.finished_at, inverter);
+    configureMap(reply.finished_at, inverter);
     return;
   }
   inverter.settled(reply.finished_at, reply);
@@ -53,8 +54,9 @@ void SettingsReads::cut(const InFlight& current, const wire::Reply& reply)
 
 void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)
 {
+  const bool may_write = !bus_.shutting_down && inverter.standsStill();
   const auto wanted =
-      bus_.shutting_down ? std::vector<std::pair<std::string, std::uint32_t>>() : inverter.takeBlockWrites();
+      inverter.block_transfer.takeWrites(may_write ? inverter.settings.blockSlots() : std::optional<BlockSlots>());
   if (wanted.empty())
   {
     return;
@@ -64,6 +66,26 @@ void SettingsReads::configureBlock(TimePoint now, Inverter& inverter)
   services_.start(now, inverter.index,
                   std::make_unique<ConfigureBlockJob>(inverter.drive, inverter.config.node, wanted),
                   serviceBounds(bus_).write_parameter, AnswerCallback());
+}
+
+void SettingsReads::configureMap(TimePoint now, Inverter& inverter)
+{
+  if (bus_.shutting_down)
+  {
+    return;
+  }
+  if (const std::string refusal = inverter.map_use.takeRefusal(inverter.settings.map()); !refusal.empty())
+  {
+    bus_.outbox.log(Level::Warn, inverter.config.name + ": " + refusal);
+  }
+  const auto wanted = inverter.map_use.takeWrites(inverter.settings.map(), inverter.standsStill());
+  if (wanted.empty())
+  {
+    return;
+  }
+  bus_.outbox.log(Level::Warn, inverter.config.name + ": configure_map: writing " + std::to_string(wanted.size()) +
+                                   " parameters and storing them in the drive's EEPROM, once");
+  services_.configureMap(now, inverter.index, wanted);
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -23,6 +23,7 @@ public:
 
 private:
   void configureBlock(TimePoint now, Inverter& inverter);
+  void configureMap(TimePoint now, Inverter& inverter);
 
   BusState& bus_;
   Turns& turns_;

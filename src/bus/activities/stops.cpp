@@ -143,7 +143,7 @@ std::string Stops::problem(const Inverter& inverter) const
 void Stops::confirmed(TimePoint now, Inverter& inverter)
 {
   inverter.cameToRest(now);
-  inverter.settings.released();
+  inverter.settings.underCommand(false);
   inverter.interlock.stopConfirmed(now);
   bus_.outbox.event(inverter.config.name + ": the stop is confirmed");
   finishCalls(now);

@@ -10,6 +10,16 @@ namespace bus
 {
 namespace
 {
+/// What the next refresh does with the drive's register map.
+MapOrders mapOrders(TimePoint now, Inverter& inverter)
+{
+  const drive::Monitor& seen = inverter.refresh.fresh().monitor;
+  const bool run = inverter.movement.runPossible() || seen.run_seen.value_or(false);
+  const bool at_rest = inverter.link.known() && !seen.run_seen.value_or(true) && !seen.running.value_or(true) &&
+                       seen.output_frequency.value_or(1.0) == 0.0;
+  return inverter.map_use.orders(now, inverter.settings.map().fits(), run, at_rest);
+}
+
 /// The wire's time for all that takes from the share of the slow values, once: with \p gap before each exchange, \p unread for
 /// one that was not made yet.
 Duration slowNeeds(const Inverter& inverter, Duration gap, Duration unread)
@@ -48,6 +58,12 @@ Duration Turns::longestReplyDelay() const
 TimePoint Turns::countedFrom(const wire::Reply& reply) const
 {
   return std::max(reply.sent_at, reply.finished_at - longestExchange());
+}
+
+const drive::ReadBlock& Turns::nextRead(TimePoint now, Inverter& inverter) const
+{
+  inverter.refresh.useMap([&inverter, now] { return mapOrders(now, inverter); });
+  return inverter.refresh.next(now, slowLeave(now, inverter));
 }
 
 /// What the share of the slow values leaves to \p inverter (contract, 8.3). One whose warning word has a reason to be another

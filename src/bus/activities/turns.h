@@ -20,14 +20,16 @@ public:
   void finish(const InFlight& current, const wire::Reply& reply, bool more);
   /// The time that a probe takes from everybody else, with its silences; a refusal takes it too.
   Duration price(const InFlight& current, const wire::Reply& reply) const;
-  /// What the share of the slow values leaves to the refresh of \p inverter that begins (contract, 8.3).
-  SlowLeave slowLeave(TimePoint now, const Inverter& inverter) const;
+  /// The read that a refresh of \p inverter goes on with, or begins with: through the drive's register map where that is in use
+  /// (contract, 8.17), and with a slow value where their share has room.
+  const drive::ReadBlock& nextRead(TimePoint now, Inverter& inverter) const;
   /// With what the drives themselves have told of their wait.
   Duration longestExchange() const;
   /// The longest wait of a drive's own (C078) as read from it, beyond what its profile says.
   Duration longestReplyDelay() const;
 
 private:
+  SlowLeave slowLeave(TimePoint now, const Inverter& inverter) const;
   TimePoint countedFrom(const wire::Reply& reply) const;
 
   BusState& bus_;

@@ -25,10 +25,11 @@ bool joinsRead(const Inverter& inverter, const std::optional<Write>& write)
          profile.points.at(write->point).item.space == drive::Space::Register;
 }
 
+/// No maker's text shows a 17H over the numbers of a register map.
 bool isRegisterRead(const StatusRead& read)
 {
   return read.kind == StatusRead::Kind::Fast && read.block.space == drive::Space::Register &&
-         !read.block.fields.empty();
+         !read.block.fields.empty() && read.block.mirrors.empty();
 }
 
 /// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
@@ -49,7 +50,7 @@ std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, co
   const bool combines = inverter.refresh.chosen().read() && (in_force || !inverter.movement.runConfirmed());
   if (combines && !read_lost_at_[inverter.index] && inverter.movement.nextCombined(std::nullopt))
   {
-    const drive::ReadBlock& read = inverter.refresh.next(now, turns_.slowLeave(now, inverter));
+    const drive::ReadBlock& read = turns_.nextRead(now, inverter);
     with_status = in_force && !read.chosen.empty();
     auto combined = inverter.movement.nextCombined(with_status ? std::optional<drive::ReadBlock>(read) : std::nullopt);
     if (combined && line.mayAsk(combined->request, now))
@@ -63,7 +64,7 @@ std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, co
       joinsRead(inverter, write))
   {
     const wire::Request both = inverter.drive.writeAndRead(inverter.config.node, { { write->point, write->raw } },
-                                                           inverter.refresh.next(now, turns_.slowLeave(now, inverter)));
+                                                           turns_.nextRead(now, inverter));
     with_status = isRegisterRead(inverter.refresh.asked()) && line.mayAsk(both, now);
     write->request = with_status ? both : write->request;
   }
@@ -136,7 +137,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
     inverter.movement.confirmed(current.write, now);
     if (current.write.starts)
     {
-      inverter.settings.commanded();
+      inverter.settings.underCommand(true);
     }
     inverter.lost_writes.acknowledged();
     ++frames_[inverter.index];

@@ -69,7 +69,8 @@ std::optional<Duration> Waits::cutAfter(const InFlight& current) const
   const Inverter& inverter = *bus_.inverters[current.inverter];
   const bool frame_of_a_stop = current.pick.what == Pick::What::Stop && !inverter.link.offline();
   const bool zero = current.pick.what == Pick::What::Velocity && !current.moves;
-  const bool stop = frame_of_a_stop || zero || current.pick.what == Pick::What::Broadcast;
+  const bool stop_word = current.keeps_alive && !current.may_start;
+  const bool stop = frame_of_a_stop || zero || stop_word || current.pick.what == Pick::What::Broadcast;
   // A loop-back that goes in its place writes nothing.
   const bool lasting = current.lasting && !current.resync;
   if (bus_.gateway.active() || stop || lasting || !current.request.expects_reply)

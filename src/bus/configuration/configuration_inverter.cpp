@@ -224,6 +224,7 @@ void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& con
   config.rated_voltage = readRating(entry, "rated_voltage", { 0.0, 10000.0, true, "V" });
   config.configure_block = entry.flag("configure_block", config.configure_block);
   config.block_read = readBlock(entry, config.block_read);
+  config.configure_map = entry.flag("configure_map", config.configure_map);
   config.stop_unexpected_motion = entry.flag("stop_unexpected_motion", config.stop_unexpected_motion);
   config.release_on_exit = entry.flag("release_on_exit", config.release_on_exit);
 }
@@ -231,10 +232,18 @@ void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& con
 /// Keys that mean something to one protocol only, or contradict others.
 void checkProtocolKeys(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
 {
-  if (bus.parameters_read_only && entry.flag("configure_block", false))
+  for (const char* key : { "configure_block", "configure_map" })
   {
-    fail(entry, "configure_block", "writes parameters, and parameter_access is read_only",
-         "false, or parameter_access: read_write");
+    if (bus.parameters_read_only && entry.flag(key, false))
+    {
+      fail(entry, key, "writes parameters, and parameter_access is read_only",
+           "false, or parameter_access: read_write");
+    }
+  }
+  if (!profile.map && entry.flag("configure_map", false))
+  {
+    fail(entry, "configure_map", "needs a drive with a register map, and the profile " + profile.name + " has none",
+         "no configure_map here");
   }
   for (const char* key : { "configure_block", "block_read" })
   {

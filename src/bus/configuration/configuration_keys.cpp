@@ -22,7 +22,7 @@ bool contains(const Keys& keys, const std::string& key)
 /// Keys that the contract has for a later version: to ignore them would promise what is not done.
 const Keys& laterKeys()
 {
-  static const Keys KEYS{ "in_service", "parameters", "parameters_on_difference", "configure_map" };
+  static const Keys KEYS{ "in_service", "parameters", "parameters_on_difference" };
   return KEYS;
 }
 
@@ -97,11 +97,23 @@ const Keys& busKeys()
 
 const Keys& sharedKeys()
 {
-  static const Keys KEYS{
-    "drive",         "hz_per_unit",   "max_velocity",    "min_velocity", "command_timeout",        "response_timeout",
-    "rated_current", "rated_voltage", "configure_block", "block_read",   "stop_unexpected_motion", "release_on_exit",
-    "overrides",     "confirm",       "limit",           "skip"
-  };
+  static const Keys KEYS{ "drive",
+                          "hz_per_unit",
+                          "max_velocity",
+                          "min_velocity",
+                          "command_timeout",
+                          "response_timeout",
+                          "rated_current",
+                          "rated_voltage",
+                          "configure_block",
+                          "block_read",
+                          "configure_map",
+                          "stop_unexpected_motion",
+                          "release_on_exit",
+                          "overrides",
+                          "confirm",
+                          "limit",
+                          "skip" };
   return KEYS;
 }
 

@@ -8,8 +8,13 @@ namespace inverter_bus
 {
 namespace bus
 {
-DriveSettings::DriveSettings(const drive::Drive& drive, std::uint8_t station)
-  : drive_(drive), station_(station), settings_(drive), identity_(drive, station), connect_(drive)
+DriveSettings::DriveSettings(const drive::Drive& drive, std::uint8_t station, bool map_wanted)
+  : drive_(drive)
+  , station_(station)
+  , settings_(drive)
+  , identity_(drive, station)
+  , connect_(drive)
+  , map_(drive, map_wanted)
 {
 }
 
@@ -18,6 +23,7 @@ void DriveSettings::restart()
   settings_.restart();
   identity_.restart();
   connect_.restart();
+  map_.restart();
 }
 
 void DriveSettings::connectAgain()
@@ -28,16 +34,15 @@ void DriveSettings::connectAgain()
 void DriveSettings::reread(const std::string& parameter)
 {
   settings_.reread(parameter);
+  if (map_.has(parameter))
+  {
+    map_.restart();
+  }
 }
 
-void DriveSettings::commanded()
+void DriveSettings::underCommand(bool in_force)
 {
-  settings_.commanded();
-}
-
-void DriveSettings::released()
-{
-  settings_.released();
+  in_force ? settings_.commanded() : settings_.released();
 }
 
 /// The step of the sequence `connect` that is due: a drive that is another one than expected is told nothing, and what tells
@@ -65,7 +70,7 @@ bool DriveSettings::urgent() const
 
 bool DriveSettings::pending() const
 {
-  return urgent() || settings_.next() != nullptr;
+  return urgent() || settings_.next() != nullptr || map_.next() != nullptr;
 }
 
 bool DriveSettings::nextWrites() const
@@ -89,8 +94,12 @@ wire::Request DriveSettings::next() const
     return *model;
   }
   const drive::Step* step = connectStep();
-  return step != nullptr ? drive_.command(station_, *step)
-                         : drive_.readParameter(station_, settings_.next()->parameter);
+  if (step != nullptr)
+  {
+    return drive_.command(station_, *step);
+  }
+  return settings_.next() != nullptr ? drive_.readParameter(station_, settings_.next()->parameter)
+                                     : drive_.read(station_, *map_.next());
 }
 
 void DriveSettings::done(const wire::Reply& reply)
@@ -107,9 +116,13 @@ void DriveSettings::done(const wire::Reply& reply)
   {
     connect_.done(reply);
   }
-  else
+  else if (settings_.next() != nullptr)
   {
     settings_.done(reply);
+  }
+  else
+  {
+    map_.done(reply);
   }
 }
 
@@ -146,6 +159,11 @@ drive::Ratings DriveSettings::ratings() const
 std::optional<BlockSlots> DriveSettings::blockSlots() const
 {
   return blockSlotsOf(drive_, settings_);
+}
+
+const MapTable& DriveSettings::map() const
+{
+  return map_;
 }
 
 std::optional<Duration> DriveSettings::driveTimeout() const

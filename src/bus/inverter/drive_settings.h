@@ -11,6 +11,7 @@
 
 #include "bus/inverter/connect_steps.h"
 #include "bus/inverter/drive_identity.h"
+#include "bus/inverter/map_table.h"
 #include "bus/inverter/setting_facts.h"
 #include "bus/inverter/setting_list.h"
 #include "inverter_bus/bus/types.h"
@@ -26,7 +27,8 @@ namespace bus
 class DriveSettings
 {
 public:
-  DriveSettings(const drive::Drive& drive, std::uint8_t station);
+  /// \p map_wanted: what the drive has in its register map is of interest.
+  DriveSettings(const drive::Drive& drive, std::uint8_t station, bool map_wanted = false);
 
   /// Settles everything again (the drive has come back).
   void restart();
@@ -51,10 +53,9 @@ public:
   Duration pauseBeforeNext() const;
   /// A parameter was written through the node: what it means may have changed.
   void reread(const std::string& parameter);
-  /// A command of ours is in force: who commands the drive can be seen only now. Again: it is looked at anew.
-  void commanded();
-  /// A stop of ours was confirmed: what was seen under command counts no more.
-  void released();
+  /// A command of ours is \p in_force: who commands the drive can be seen only now; again: it is looked at anew. False: a stop
+  /// of ours was confirmed, and what was seen under command counts no more.
+  void underCommand(bool in_force);
 
   Identity identity() const;
   /// Why the drive gets no command but a stop: it is the wrong one, or has not told yet what it is; empty: it is right.
@@ -67,6 +68,9 @@ public:
   drive::Ratings ratings() const;
   /// Selections of the block read and write; empty before all are known, or where the drive refuses to tell.
   std::optional<BlockSlots> blockSlots() const;
+
+  /// What the drive has in its register map.
+  const MapTable& map() const;
 
   /// The drive's own communication time-out, as read or assumed; nothing: none, or not known yet.
   std::optional<Duration> driveTimeout() const;
@@ -85,6 +89,7 @@ private:
   SettingList settings_;
   DriveIdentity identity_;
   ConnectSteps connect_;
+  MapTable map_;
   bool leave_setup_ = false;
 };
 }  // namespace bus

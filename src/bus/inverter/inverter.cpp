@@ -32,13 +32,14 @@ Inverter::Inverter(std::size_t index, const InverterConfig& config, const drive:
   , movement(drive, config)
   , stop(drive, config.node)
   , refresh(drive)
-  , settings(drive, config.node)
+  , settings(drive, config.node, MapUse::wanted(drive, config))
   , loopback(config.modbus_tcp)
   , link(offline_after)
   , evidence(drive)
   , feeding(drive)
   , motion(drive, config)
   , block_transfer(drive, config)
+  , map_use(drive, config)
   , lost_writes(retries, offline_after)
   , liveness(offline_after, seconds(offline_after * (1 + retries) * config.response_timeout))
   , setting_repeats(retries)
@@ -102,6 +103,7 @@ void Inverter::forgetDrive(bool after_silence)
   motion.forget();
   services.setupLeft();
   block_transfer.tryAgain();
+  map_use.restart();
   pauses.forget();
   movement.forgetWords();
   refresh.forget();
@@ -143,12 +145,11 @@ void Inverter::settled(TimePoint now, const wire::Reply& reply)
   refresh.useBlock(block_transfer.read(settings.blockSlots()));
 }
 
-std::vector<std::pair<std::string, std::uint32_t>> Inverter::takeBlockWrites()
+bool Inverter::standsStill() const
 {
   const bool at_rest = link.known() && !movement.runPossible() && !movement.target() && !interlock.isFaulted() &&
                        !refresh.fresh().monitor.running.value_or(true);
-  const bool may_write = at_rest && settings.identity() == Identity::Right;
-  return block_transfer.takeWrites(may_write ? settings.blockSlots() : std::nullopt);
+  return at_rest && settings.identity() == Identity::Right;
 }
 
 void Inverter::dropBlock(const std::string& why)
@@ -168,6 +169,7 @@ void Inverter::noteExchange(const wire::Reply& reply)
   }
   // A short power cut may be behind it.
   refresh.slow().suspectRestart();
+  map_use.lost();
   if (drive.wears("frequency"))
   {
     // After one the drive writes set-points to its EEPROM again.
@@ -182,16 +184,24 @@ void Inverter::noteStatus(const wire::Reply& reply, bool more)
     return;
   }
   link.dataRead();
-  if (!refresh.chosen().read() && refresh.takeBlockRefusal())
+  if (!refresh.chosen().read() && refresh.chosen().takeRefusal())
   {
     block_transfer.drop("it is selected but not in effect, or the drive refuses it");
   }
-  evidence.statusRead(more ? refresh.words().monitor : refresh.fresh().monitor, reply, movement);
+  if (const auto outcome = refresh.mapped().takeOutcome())
+  {
+    map_use.note(*outcome);
+  }
+  evidence.statusRead(more ? refresh.draft().words().monitor : refresh.fresh().monitor, reply, movement);
 }
 
 void Inverter::parameterWritten(const std::string& name)
 {
   settings.reread(name);
+  if (settings.map().has(name))
+  {
+    map_use.end("its parameters were changed; that counts after the drive was switched off and on");
+  }
   if (block_transfer.isSelectedBy(name))
   {
     dropBlock("its selection was changed; that counts after the drive was switched off and on");
@@ -239,14 +249,14 @@ Judgement Inverter::statusComplete(TimePoint now)
   Judgement judgement = compare(now, refresh.fresh(), true);
   if (evidence.takeSourceDue(now, movement, refresh.reads().slowPeriod()))
   {
-    settings.commanded();
+    settings.underCommand(true);
   }
   return judgement;
 }
 
 Judgement Inverter::wordsRead(TimePoint now)
 {
-  return compare(now, refresh.words(), false);
+  return compare(now, refresh.draft().words(), false);
 }
 
 /// What the drive does with what it was told, and what follows for the parts of this inverter.
@@ -290,7 +300,7 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   {
     return "";
   }
-  refresh.restartNoted();
+  refresh.draft().restartNoted();
   if (restart == Restart::PerhapsBeforeRun)
   {
     settings.connectAgain();
@@ -300,6 +310,7 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   settings.restart();
   // What was selected for its block read may count only now.
   block_transfer.tryAgain();
+  map_use.restart();
   refresh.useBlock(std::nullopt);
   const bool runs_on = movement.runPossible() && !stop.pending();
   return runs_on ? "the drive has restarted (switched off and on, or reset)" : "";

@@ -18,6 +18,7 @@
 #include "bus/inverter/liveness.h"
 #include "bus/inverter/loopback_knowledge.h"
 #include "bus/inverter/lost_writes.h"
+#include "bus/inverter/map_use.h"
 #include "bus/inverter/motion_watch.h"
 #include "bus/inverter/movement.h"
 #include "bus/inverter/pauses.h"
@@ -59,6 +60,7 @@ public:
   Feeding feeding;
   MotionWatch motion;
   BlockTransfer block_transfer;
+  MapUse map_use;
   CommandError command_error;
   /// What came since the last complete status.
   LinkRecord record;
@@ -97,8 +99,8 @@ public:
   bool connectDue(TimePoint now) const;
   /// After each exchange for its settings.
   void settled(TimePoint now, const wire::Reply& reply);
-  /// Parameters and raw values that make the block read and write fit; once, and empty where nothing is to be written now.
-  std::vector<std::pair<std::string, std::uint32_t>> takeBlockWrites();
+  /// Its parameters may be written: the motor stands, and nobody is about to move it.
+  bool standsStill() const;
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
   /// A parameter was written through this node.

@@ -35,6 +35,15 @@ bool backToDirectReads(Refresh& refresh, ChosenBlock& chosen)
   chosen.drop();
   return true;
 }
+
+/// The same from the register map.
+bool backToPlainReads(std::vector<std::size_t>& plan, MappedReads& mapped, StatusReads& reads)
+{
+  plan.clear();
+  mapped.drop();
+  reads.change(std::nullopt, {});
+  return true;
+}
 }  // namespace
 
 Refresh::Refresh(const drive::Drive& drive) : drive_(drive), reads_(drive), chosen_(drive)
@@ -61,18 +70,34 @@ const ChosenBlock& Refresh::chosen() const
   return chosen_;
 }
 
-bool Refresh::takeBlockRefusal()
+ChosenBlock& Refresh::chosen()
 {
-  return chosen_.takeRefusal();
+  return chosen_;
+}
+
+void Refresh::useMap(const std::function<MapOrders()>& orders)
+{
+  if (plan_.empty() && mapped_.take(orders()))
+  {
+    reads_.change(mapped_.orders().read, mapped_.orders().proof);
+    slow_.restart();
+  }
+}
+
+MappedReads& Refresh::mapped()
+{
+  return mapped_;
 }
 
 void Refresh::plan(TimePoint now, const SlowLeave& leave)
 {
   draft_.restart();
   reads_.planPeriod(leave.period);
-  plan_ = slow_.take(reads_, now, !stamp_, leave);
+  plan_ = slow_.take(reads_, now, !last_.stamp, leave);
   const std::vector<std::size_t> fast = reads_.open(StatusRead::Kind::Fast, now);
   plan_.insert(plan_.end(), fast.begin(), fast.end());
+  const std::vector<std::size_t> proof = reads_.open(StatusRead::Kind::Proof, now);
+  plan_.insert(plan_.end(), proof.begin(), proof.end());
   if (plan_.empty())
   {
     // Everything is refused: keep asking for something, so that the inverter's return to health is seen.
@@ -118,18 +143,18 @@ bool Refresh::advance()
     // Every read was refused, or every one that tells whether the motor runs: that is no status.
     return false;
   }
-  if (warns(fresh_.monitor, draft_.words().monitor))
+  if (warns(last_.words.monitor, draft_.words().monitor))
   {
     slow_.askForWarning();
   }
-  fresh_ = draft_.words();
-  if (!fresh_.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
+  last_.words = draft_.words();
+  if (!last_.words.monitor.tripped().value_or(true) && drive_.reports("fault_code"))
   {
-    fresh_.monitor.fault_code = 0;
+    last_.words.monitor.fault_code = 0;
   }
-  slow_.noteRun(fresh_.monitor, drive_.reports("run_seen"));
+  slow_.noteRun(last_.words.monitor, drive_.reports("run_seen"));
   // Only now: a stamp belongs to a whole status, not to half of a new one beside half of an old one.
-  stamp_ = draft_.stamp();
+  last_.stamp = draft_.stamp();
   complete_ = true;
   return false;
 }
@@ -137,12 +162,23 @@ bool Refresh::advance()
 bool Refresh::received(const wire::Reply& reply)
 {
   StatusRead& read = reads_[plan_.front()];
-  if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, fresh_.monitor))
+  if (read.kind == StatusRead::Kind::Proof)
+  {
+    drive::Monitor values;
+    drive_.decode(read.block, reply.pdu, values, ratings_);
+    mapped_.compare(!read.block.mirrors.empty(), values, draft_.words().monitor);
+    return advance();
+  }
+  if (!read.block.chosen.empty() && !chosen_.received(reply, ratings_, last_.words.monitor))
   {
     return backToDirectReads(*this, chosen_);
   }
   read.values = drive::Monitor();
   drive_.decode(read.block, reply.pdu, read.values, ratings_);
+  if (!read.block.mirrors.empty() && !mapped_.accepts(read.values))
+  {
+    return backToPlainReads(plan_, mapped_, reads_);
+  }
   read.period = read.ever ? reply.finished_at - read.last : Duration{ 0 };
   read.took = reply.finished_at - reply.sent_at;
   read.last = reply.finished_at;
@@ -155,6 +191,17 @@ bool Refresh::received(const wire::Reply& reply)
 
 bool Refresh::refused(const wire::Reply& reply)
 {
+  if (!asked().block.mirrors.empty())
+  {
+    mapped_.refused();
+    if (asked().kind != StatusRead::Kind::Proof)
+    {
+      return backToPlainReads(plan_, mapped_, reads_);
+    }
+    // The status of this refresh is there already.
+    plan_.resize(1);
+    return advance();
+  }
   const bool lasting = isLastingRefusal(reply);
   if (!asked().block.chosen.empty() && chosen_.refused(lasting))
   {
@@ -177,12 +224,7 @@ bool Refresh::refused(const wire::Reply& reply)
     plan_.clear();
     return true;
   }
-  return leaveOut(reply);
-}
-
-/// A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
-bool Refresh::leaveOut(const wire::Reply& reply)
-{
+  // A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
   StatusRead& read = reads_[plan_.front()];
   read.values = drive::Monitor();
   if (read.tellsRun() && !reads_.othersTellRun(plan_.front(), reply.finished_at))
@@ -235,19 +277,14 @@ bool Refresh::takeComplete()
 
 drive::Monitor Refresh::monitor(TimePoint now) const
 {
-  drive::Monitor monitor = fresh_.monitor;
+  drive::Monitor monitor = last_.words.monitor;
   reads_.addSlowValues(now, monitor);
   return monitor;
 }
 
 const StatusWords& Refresh::fresh() const
 {
-  return fresh_;
-}
-
-const StatusWords& Refresh::words() const
-{
-  return draft_.words();
+  return last_.words;
 }
 
 bool Refresh::asksForWarning(TimePoint now) const
@@ -255,9 +292,9 @@ bool Refresh::asksForWarning(TimePoint now) const
   return slow_.asksForWarning(reads_, now);
 }
 
-void Refresh::restartNoted()
+StatusDraft& Refresh::draft()
 {
-  draft_.restartNoted();
+  return draft_;
 }
 
 SlowTurns& Refresh::slow()
@@ -267,16 +304,17 @@ SlowTurns& Refresh::slow()
 
 const std::optional<TimePoint>& Refresh::stamp() const
 {
-  return stamp_;
+  return last_.stamp;
 }
 
 void Refresh::forget()
 {
   plan_.clear();
-  fresh_.monitor = drive::Monitor();
+  last_.words.monitor = drive::Monitor();
   complete_ = false;
   slow_.forget();
   chosen_.forget();
+  mapped_.forget();
   // Reads that were left out, or split for another reason than a hole, are tried in full again.
   reads_.forget();
 }

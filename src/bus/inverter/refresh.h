@@ -4,10 +4,12 @@
 #define INVERTER_BUS_BUS_REFRESH_H
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "bus/inverter/chosen_block.h"
+#include "bus/inverter/mapped_reads.h"
 #include "bus/inverter/slow_turns.h"
 #include "bus/inverter/status_draft.h"
 #include "bus/inverter/status_reads.h"
@@ -33,8 +35,11 @@ public:
   /// reads. A refresh under way starts again if this changes anything.
   void useBlock(const std::optional<drive::ReadBlock>& block);
   const ChosenBlock& chosen() const;
-  /// The drive has refused the read of chosen words, or it brought something else than what was chosen; true once.
-  bool takeBlockRefusal();
+  ChosenBlock& chosen();
+
+  /// Asks for what the next refresh does with the drive's register map; not while one is under way.
+  void useMap(const std::function<MapOrders()>& orders);
+  MappedReads& mapped();
 
   /// The read that is due; starts a new refresh when none is under way, with what \p leave allows of slow values.
   const drive::ReadBlock& next(TimePoint now, const SlowLeave& leave = SlowLeave());
@@ -57,14 +62,12 @@ public:
   drive::Monitor monitor(TimePoint now) const;
   /// The run words of the last complete refresh and when their request left.
   const StatusWords& fresh() const;
-  /// The same of the refresh under way: what has come so far.
-  const StatusWords& words() const;
+  /// The refresh under way: what has come so far.
+  StatusDraft& draft();
   /// Leaves the read at hand out for a while if it is one of the slow values; false: it is not, or nothing follows it.
   bool skipSlow();
   /// The drive's warning word is the next slow value to be read, on this bus.
   bool asksForWarning(TimePoint now) const;
-  /// The marker of a restart that was just read is dealt with.
-  void restartNoted();
   /// What goes before all other slow values.
   SlowTurns& slow();
   /// Of the last complete refresh; empty: none since the program began.
@@ -76,7 +79,6 @@ public:
 
 private:
   void plan(TimePoint now, const SlowLeave& leave);
-  bool leaveOut(const wire::Reply& reply);
   bool advance();
   bool postpone();
 
@@ -84,12 +86,18 @@ private:
   StatusReads reads_;
   SlowTurns slow_;
   ChosenBlock chosen_;
+  MappedReads mapped_;
   StatusDraft draft_;
   /// The reads of the refresh under way, those that are left at the end; empty: none is under way.
   std::vector<std::size_t> plan_;
   TimePoint asked_at_;
-  StatusWords fresh_;
-  std::optional<TimePoint> stamp_;
+  /// Of the last complete refresh.
+  struct Status
+  {
+    StatusWords words;
+    std::optional<TimePoint> stamp;
+  };
+  Status last_;
   drive::Ratings ratings_;
   bool run_refused_ = false;
   bool complete_ = false;

@@ -105,8 +105,9 @@ void StatusReads::build(const std::optional<drive::ReadBlock>& chosen)
   }
   for (StatusRead& read : reads_)
   {
-    const auto same = std::find_if(before.begin(), before.end(),
-                                   [&](const StatusRead& old) { return isSame(old.block, read.block); });
+    const auto same = std::find_if(before.begin(), before.end(), [&](const StatusRead& old) {
+      return old.kind == read.kind && isSame(old.block, read.block);
+    });
     if (same != before.end())
     {
       read = *same;
@@ -115,6 +116,12 @@ void StatusReads::build(const std::optional<drive::ReadBlock>& chosen)
     }
   }
   shelved_ = std::move(before);
+}
+
+void StatusReads::change(const std::optional<drive::ReadBlock>& chosen, const std::vector<drive::ReadBlock>& proof)
+{
+  build(chosen);
+  add(proof, StatusRead::Kind::Proof);
 }
 
 void StatusReads::forget()

@@ -23,6 +23,8 @@ struct StatusRead
   {
     /// Read in every refresh.
     Fast,
+    /// Compares what the drive's register map brings with plain reads; behind the fast ones.
+    Proof,
     /// Read in each refresh that shows a trip.
     Fault,
     /// Takes turns with others of its kind.
@@ -59,6 +61,8 @@ public:
   /// All in full, but across no hole that the drive has shown: \p chosen, where the drive has such a read in use, and what
   /// it doesn't bring. What was read by the same ones still counts.
   void build(const std::optional<drive::ReadBlock>& chosen);
+  /// The same, and \p proof: reads that compare.
+  void change(const std::optional<drive::ReadBlock>& chosen, const std::vector<drive::ReadBlock>& proof);
   /// The same without a chosen one; nothing that was read counts any more.
   void forget();
   /// The drive refuses this read: two smaller ones take its place, \p for_good: also when all are built anew. False: it

@@ -126,6 +126,10 @@ std::vector<std::string> profileWarnings(const Inverter& inverter)
   {
     warnings.push_back(inverter.block_transfer.whyNot(*slots));
   }
+  if (const std::string text = inverter.map_use.whyNot(inverter.settings.map()); !text.empty())
+  {
+    warnings.push_back(text);
+  }
   if (writesWear(inverter))
   {
     warnings.push_back("every change of the set-point is written to the drive's EEPROM (" +
@@ -222,6 +226,10 @@ std::vector<std::pair<std::string, std::string>> valuesOf(const Inverter& invert
   {
     values.emplace_back("block read",
                         refresh.chosen().read() ? "in use: " + util::joined(inverter.config.block_read) : "not used");
+  }
+  if (MapUse::wanted(inverter.drive, inverter.config))
+  {
+    values.emplace_back("register map", inverter.map_use.inUse() ? "in use" : "not used");
   }
   for (const auto& value : refresh.chosen().values())
   {

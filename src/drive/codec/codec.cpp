@@ -14,6 +14,7 @@ namespace drive
 {
 namespace
 {
+constexpr unsigned COILS_PER_WORD = 16;
 constexpr std::size_t HEADER = 2;  // function code, byte count
 
 void append(wire::Bytes& bytes, std::uint32_t word)
@@ -81,6 +82,28 @@ std::optional<std::uint32_t> extractRegisters(std::size_t index, unsigned count,
   for (std::size_t i = index * 2; i < (index + count) * 2; ++i)
   {
     raw = (raw << 8) | reply[HEADER + i];
+  }
+  return raw;
+}
+
+/// Coils that lie in registers of a block.
+std::optional<std::uint32_t> extractMirroredCoils(const Item& item, const ReadBlock& block, const wire::Bytes& reply)
+{
+  std::uint32_t raw = 0;
+  for (unsigned i = 0; i < item.size; ++i)
+  {
+    const unsigned coil = item.number + i;
+    const auto word = std::find_if(block.mirrors.begin(), block.mirrors.end(), [coil](const MirroredCoils& one) {
+      return coil >= one.first_coil && coil < one.first_coil + COILS_PER_WORD;
+    });
+    const auto bits = word == block.mirrors.end()
+                          ? std::nullopt
+                          : extractRegisters(static_cast<std::size_t>(word->number - block.number), 1, reply);
+    if (!bits)
+    {
+      return std::nullopt;
+    }
+    raw |= ((*bits >> (coil - word->first_coil)) & 1U) << i;
   }
   return raw;
 }
@@ -176,6 +199,11 @@ wire::Bytes encodeWrite(const Item& item, std::uint32_t raw, const Profile& prof
 std::optional<std::uint32_t> extractRaw(const Item& item, const ReadBlock& block, const wire::Bytes& reply,
                                         const Profile& profile)
 {
+  if (item.space == Space::Coil && block.space == Space::Register)
+  {
+    const auto coils = isReplyTo(block.space, reply) ? extractMirroredCoils(item, block, reply) : std::nullopt;
+    return coils ? std::optional<std::uint32_t>(item.bit ? (*coils >> *item.bit) & 1U : *coils & item.mask) : coils;
+  }
   const auto index = indexIn(block, item, profile);
   if (!index)
   {

@@ -55,6 +55,7 @@ Profile buildProfile(const Value& root, Problems& problems)
   readFaults(map, numbering, profile);
   readParameters(map, numbering, profile);
   readBlock(map, numbering, profile);
+  readMap(map, numbering, profile);
   readRatings(map, profile);
   readSupervision(map, profile);
   map.finish();
@@ -64,6 +65,7 @@ Profile buildProfile(const Value& root, Problems& problems)
     checkReferences(root, profile, problems);
     checkAbilities(root, profile, problems);
     checkBlock(root, profile, problems);
+    checkMap(root, profile, problems);
     checkOverlaps(root, profile, problems);
     settleUnconfirmed(profile);
   }

@@ -28,6 +28,8 @@ void readCommands(Section& root, const Numbering& numbering, Profile& profile);
 void readStatus(Section& root, const Numbering& numbering, Profile& profile);
 void readFaults(Section& root, const Numbering& numbering, Profile& profile);
 void readBlock(Section& root, const Numbering& numbering, Profile& profile);
+/// After the parameters: its table names them.
+void readMap(Section& root, const Numbering& numbering, Profile& profile);
 void readRatings(Section& root, Profile& profile);
 void readParameters(Section& root, const Numbering& numbering, Profile& profile);
 void readSupervision(Section& root, Profile& profile);
@@ -43,6 +45,7 @@ const std::vector<std::string>& operationCodeNames();
 void checkReferences(const Value& root, const Profile& profile, config::Complaints& complaints);
 void checkAbilities(const Value& root, const Profile& profile, config::Complaints& complaints);
 void checkBlock(const Value& root, const Profile& profile, config::Complaints& complaints);
+void checkMap(const Value& root, const Profile& profile, config::Complaints& complaints);
 void checkOverlaps(const Value& root, const Profile& profile, config::Complaints& complaints);
 
 /// The value at a way like "points.run" for a complaint; the nearest one above it where it doesn't exist.

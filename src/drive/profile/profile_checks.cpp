@@ -378,6 +378,37 @@ void checkBlock(const Value& root, const Profile& profile, config::Complaints& c
   }
 }
 
+void checkMap(const Value& root, const Profile& profile, config::Complaints& complaints)
+{
+  if (!profile.map)
+  {
+    return;
+  }
+  const RegisterMap& map = *profile.map;
+  if (map.read.size > profile.read_registers)
+  {
+    locate(root, "map.read", complaints)
+        .complain("reads more registers than limits.read_registers allows (" + std::to_string(profile.read_registers) +
+                  ")");
+  }
+  for (const MirroredCoils& word : map.words)
+  {
+    const bool inside = word.number >= map.read.number && word.number < map.read.number + map.read.size;
+    const bool in_table = std::any_of(map.table.begin(), map.table.end(),
+                                      [&word](const auto& entry) { return entry.second == word.number; });
+    if (!inside || !in_table)
+    {
+      locate(root, "map.words", complaints)
+          .complain("register " + util::hexNumber(word.number) +
+                    (inside ? ": the table lays nothing over it" : ": is not in the read of the map"));
+    }
+  }
+  if (profile.block)
+  {
+    locate(root, "map", complaints).complain("stands beside a section block: allowed: one of them");
+  }
+}
+
 void checkOverlaps(const Value& root, const Profile& profile, config::Complaints& complaints)
 {
   checkPointOverlaps(root, profile, complaints);

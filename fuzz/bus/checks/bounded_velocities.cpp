@@ -10,11 +10,6 @@ namespace fuzz
 {
 namespace checks
 {
-namespace
-{
-constexpr double PROFILE_DELAY_S = 0.01;
-}  // namespace
-
 BoundedVelocities::BoundedVelocities(const Observed& observed)
   : observed_(observed), lost_(observed.inverters.size(), 0)
 {
@@ -58,8 +53,7 @@ void BoundedVelocities::ended(TimePoint now)
     return;
   }
   // Nor is one a try that a stop has cut (8.4), also in the time that the drive's own delay adds to the time-out.
-  const InverterFacts& inverter = observed_.scene.inverters[*facts.inverter];
-  const Duration full = seconds(inverter.response_timeout + inverter.own_delay + PROFILE_DELAY_S);
+  const Duration full = observed_.scene.inverters[*facts.inverter].fullWait();
   const bool cut = exchange.cut || (wanted_off_ && now - exchange.request_end < full);
   lost_[*facts.inverter] += cut ? 0 : 1;
 }

@@ -18,7 +18,6 @@ constexpr double SHORTEST_S = 0.015;
 constexpr int TIMES_THE_LONGEST = 3;
 constexpr double SHORTEST_PAUSE_S = 0.005;
 constexpr double FIFO_CHARACTERS = 18.0;
-constexpr double PROFILE_DELAY_S = 0.01;
 // Fewer than the 256 of the rule: which replies the node has counted is not quite known.
 constexpr std::size_t REPLIES = 200;
 constexpr double TOLERANCE_S = 0.001;

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 the inverter_bus authors
 #include "support/stop_latency_story.h"
 
+#include <algorithm>
+
 #include <unistd.h>
 
 #include <cstdio>

@@ -20,8 +20,13 @@ DriveSettings::DriveSettings(const drive::Drive& drive, std::uint8_t station, bo
 
 void DriveSettings::restart()
 {
-  settings_.restart();
   identity_.restart();
+  rereadAll();
+}
+
+void DriveSettings::rereadAll()
+{
+  settings_.restart();
   connect_.restart();
   map_.restart();
 }

@@ -32,6 +32,8 @@ public:
 
   /// Settles everything again (the drive has come back).
   void restart();
+  /// Many of its parameters were written: all are read again. It is the same drive, so that nothing is locked meanwhile.
+  void rereadAll();
   /// The drive has forgotten what it was told: the sequence `connect` goes again.
   void connectAgain();
   /// The drive may have been left in its setup area: it is led out of it before anything else.

@@ -178,7 +178,7 @@ Refusal ProfileDrive::pressStopKey(TimePoint now)
 
 Refusal ProfileDrive::setSafeStop(bool /*active*/, TimePoint /*now*/)
 {
-  return "a profile tells nothing of safe torque off";
+  return "a profile says nothing about safe torque off";
 }
 
 void ProfileDrive::takeLoad(double load)

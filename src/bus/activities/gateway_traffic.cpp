@@ -85,7 +85,7 @@ void GatewayTraffic::tell()
     bus_.outbox.log(Level::Warn, "port " + bus_.configuration.bus.port +
                                      ": requests to a silent station are left unanswered: from now on " +
                                      util::durationText(bus_.gateway.wait()) +
-                                     " is waited for instead of gateway_timeout");
+                                     " is the wait, instead of gateway_timeout");
   }
 }
 
@@ -134,10 +134,10 @@ void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
   {
     const std::string& name = neighbour->config.name;
     bus_.outbox.log(Level::Warn,
-                    inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
+                    inverter.config.name + ": offline, but it may run: each try of its stop blocks the gateway for " +
                         util::durationText(bus_.gateway.block()) + ", longer than the time-out of " + name +
-                        " itself, which runs (" + util::durationText(*neighbour->settings.driveTimeout()) +
-                        "): " + name + " may trip or stop by that; shorten the gateway's time-out");
+                        ", which is running (" + util::durationText(*neighbour->settings.driveTimeout()) +
+                        "): " + name + " may trip or stop because of it; shorten the gateway's time-out");
   }
 }
 
@@ -201,7 +201,8 @@ std::string GatewayTraffic::returnText() const
 {
   if (const Inverter* const neighbour = endangered())
   {
-    return "not while " + neighbour->config.name + " runs, whose own time-out is shorter than the gateway is kept";
+    return "not while " + neighbour->config.name +
+           " is running: its own time-out is shorter than the gateway is blocked";
   }
   const auto offline = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
                                      [](const auto& inverter) { return inverter->link.offline(); });
@@ -221,13 +222,13 @@ std::optional<Finding> GatewayTraffic::finding() const
   {
     return Finding{ Level::Warn,
                     "the gateway leaves requests to a silent station unanswered: set a time-out in it, so "
-                    "that it says so within response_timeout" };
+                    "that it reports them within response_timeout" };
   }
-  return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
-                                   util::durationText(bus_.gateway.block()) +
-                                   ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
-                                   "(1 + repeats) below response_timeout (" +
-                                   util::durationText(allowed) + ")" };
+  return Finding{ Level::Warn,
+                  "a station that does not answer blocks the gateway for " + util::durationText(bus_.gateway.block()) +
+                      ", and everything waits meanwhile, even a stop: shorten the gateway's own time-out x "
+                      "(1 + repeats) below response_timeout (" +
+                      util::durationText(allowed) + ")" };
 }
 
 /// What it does to numbers and units, so that replies are told apart by their shapes alone.

@@ -157,7 +157,7 @@ std::string WriteParameterJob::kept() const
 {
   return drive_.profile().writes == drive::Writes::Eeprom
              ? " written to the EEPROM"
-             : " written; the manual does not say whether it outlives a power-off";
+             : " written; the manual does not say whether it survives a power-off";
 }
 
 Job::Progress WriteParameterJob::afterWrite()
@@ -264,7 +264,7 @@ Job::Progress ConfigureMapJob::done(const wire::Reply& reply)
   const Progress progress = WriteParameterJob::done(reply);
   if (progress == Progress::Done && answer().success)
   {
-    answer().message += "; switch the drive off and on: its register map counts from then";
+    answer().message += "; switch the drive off and on: its register map takes effect then";
   }
   return progress;
 }

@@ -108,7 +108,7 @@ void PortWatch::lost(TimePoint now)
   if (unused && bus_.configuration.bus.gateway)
   {
     const std::string& words = bus_.line_watch.facts().peer_words;
-    fails(now, "port " + port + " is closed by its other end as soon as it is open" +
+    fails(now, "port " + port + " is closed by the other end as soon as it is opened" +
                    (words.empty() ? "" : ", which says '" + words + "'") +
                    ": another client may hold it, or it serves another protocol mode");
     return;
@@ -206,7 +206,7 @@ void PortWatch::noteConnection(TimePoint now, const InFlight& current, const wir
   }
   if (bus_.connection.nobodyAnswered())
   {
-    bus_.outbox.log(Level::Error, "port " + bus_.configuration.bus.port + ": is open again, but nobody answers",
+    bus_.outbox.log(Level::Error, "port " + bus_.configuration.bus.port + ": is open again, but no drive answers",
                     PORT_SUBJECT);
     bus_.connection.lost();
     absences_.loseEverybody(now, wire::ERROR_TIMEOUT);
@@ -219,7 +219,7 @@ void PortWatch::renewing(TimePoint now)
   {
     bus_.outbox.log(Level::Warn,
                     "port " + bus_.configuration.bus.port +
-                        ": is open, but nobody answers any more: it is opened anew, again and again while that lasts",
+                        ": is open, but no drive answers any more: it is reopened from time to time while that lasts",
                     PORT_SUBJECT);
   }
   // So long without an answer is no gap any more: whatever runs is to be stopped first when somebody answers again.

@@ -173,7 +173,7 @@ void Reports::addValues(Report& report) const
   report.values.emplace_back("longest pause in a reply", util::millisecondsText(bus_.budget.longest_pause));
   if (bus_.gateway.active())
   {
-    report.values.emplace_back("gateway kept by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
+    report.values.emplace_back("gateway blocked by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
     report.values.emplace_back("offline inverter back within", traffic_.returnText());
   }
   report.values.emplace_back("slow values", bus_.slow_share.reads()

@@ -143,7 +143,7 @@ Job::Progress ResetJob::refused(const wire::Reply& reply)
 {
   if (phase_ == Phase::CheckRun)
   {
-    return refusedByDrive(reply, "nothing was reset, since the drive does not tell whether RUN is off");
+    return refusedByDrive(reply, "nothing was reset, since the drive does not report whether RUN is off");
   }
   if (phase_ != Phase::Verify)
   {

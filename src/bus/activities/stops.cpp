@@ -114,7 +114,7 @@ void Stops::finishCalls(TimePoint now)
     Answer reply;
     reply.success = call->problems.empty();
     reply.error_id = reply.success ? ERROR_NONE : call->error_id;
-    reply.message = reply.success ? "stopped: RUN is confirmed off" : "not confirmed; the node goes on insisting";
+    reply.message = reply.success ? "stopped: RUN is confirmed off" : "not confirmed; the node keeps trying";
     for (const std::string& problem : call->problems)
     {
       reply.message += "; " + problem;

@@ -71,7 +71,7 @@ void checkSkipped(const Section& entry, const std::string& field)
   const std::string allowed = "status fields that nothing depends on: " + util::joined(drive::skippableFields());
   if (drive::protectedFields().count(field) != 0)
   {
-    fail(entry, "skip", "holds '" + field + "', which the driver can't do without", allowed);
+    fail(entry, "skip", "holds '" + field + "', which the driver needs", allowed);
   }
   if (drive::skippableFields().count(field) == 0)
   {

@@ -185,9 +185,8 @@ std::vector<Finding> DriveSettings::findings() const
   }
   if (connect_.refusedWith() != 0)
   {
-    findings.push_back(
-        { Level::Warn, "the drive refused what it is told at connect: " + drive_.exceptionText(connect_.refusedWith()) +
-                           "; check the sequence connect" });
+    findings.push_back({ Level::Warn, "the drive refused a command of the sequence connect: " +
+                                          drive_.exceptionText(connect_.refusedWith()) + "; check that sequence" });
   }
   const std::vector<Finding> own = settingFindings(drive_, settings_);
   findings.insert(findings.end(), own.begin(), own.end());
@@ -199,7 +198,7 @@ std::vector<std::pair<std::string, std::string>> DriveSettings::values() const
   std::vector<std::pair<std::string, std::string>> values;
   if (const std::string model = identity_.modelText(); !model.empty())
   {
-    values.emplace_back("model as the drive names itself", model);
+    values.emplace_back("model reported by the drive", model);
   }
   const auto own = settingValues(drive_, settings_);
   values.insert(values.end(), own.begin(), own.end());

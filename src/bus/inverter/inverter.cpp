@@ -200,11 +200,11 @@ void Inverter::parameterWritten(const std::string& name)
   settings.reread(name);
   if (settings.map().has(name))
   {
-    map_use.end("its parameters were changed; that counts after the drive was switched off and on");
+    map_use.end("its parameters were changed; that takes effect after the drive is switched off and on");
   }
   if (block_transfer.isSelectedBy(name))
   {
-    dropBlock("its selection was changed; that counts after the drive was switched off and on");
+    dropBlock("its selection was changed; that takes effect after the drive is switched off and on");
   }
 }
 

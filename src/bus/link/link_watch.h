@@ -11,7 +11,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// A link that is up but mute: nobody answers any more, or nobody ever has since it was opened (contract, 8.10). Opening it
+/// A link that is up but mute: no drive answers any more, or nobody ever has since it was opened (contract, 8.10). Opening it
 /// anew is all that can be done from here: a gateway may have gone deaf on one connection, an adapter may have lost its
 /// settings. Pure; bus thread only.
 class LinkWatch

@@ -59,8 +59,7 @@ std::string offlineText(const Inverter& inverter, TimePoint now)
   const Link& link = inverter.link;
   if (link.error() == wire::ERROR_PORT_LOST)
   {
-    return "offline (" + errorIdText(link.error()) +
-           "), since the port is not open: what to do about it is told of the bus";
+    return "offline (" + errorIdText(link.error()) + "), since the port is not open: see what is reported for the bus";
   }
   return "offline (" + errorIdText(link.error()) + " " + offlineReason(inverter) + "; last answer " +
          (link.lastAnswer() ? util::durationText(now - *link.lastAnswer()) + " ago)" : "never)") + "; " +
@@ -87,7 +86,7 @@ std::vector<Finding> errorsOf(const Inverter& inverter, TimePoint now)
     findings.push_back(
         { Level::Error,
           inverter.lost_writes.text() + " (" + std::to_string(inverter.lost_writes.inARow()) +
-              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
+              " in a row): stopped and locked, the stop is sent until it is acknowledged; check what "
               "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
   }
   if (inverter.interlock.isFaulted())

@@ -46,7 +46,7 @@ void Outbox::publish(TimePoint now, const Inverter& inverter)
   if (locked != last.locked)
   {
     last.locked = locked;
-    event(inverter.config.name + (locked ? ": is locked" : ": is not locked any more"));
+    event(inverter.config.name + (locked ? ": is locked" : ": is no longer locked"));
   }
 }
 

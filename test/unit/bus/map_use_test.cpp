@@ -317,7 +317,7 @@ TEST_F(Mx2Map, inOtherUseIsToldOnceWithBothTables)
   EXPECT_EQ("", map_.takeRefusal(table_));
   MapUse configuring(mx2_, configuring_);
   EXPECT_THAT(configuring.takeWrites(table_, true), IsEmpty());
-  EXPECT_THAT(configuring.takeRefusal(table_), HasSubstr("it has P201 = 0x4001; wanted is P201 = 0x1005"));
+  EXPECT_THAT(configuring.takeRefusal(table_), HasSubstr("it has P201 = 0x4001; wanted: P201 = 0x1005"));
   EXPECT_EQ("", configuring.takeRefusal(table_));
 }
 }  // namespace

@@ -292,7 +292,7 @@ TEST(Vfs15Motion, afterALostFrameOfAReversalTheMotorMustBeSeenRunning)
   movement.doubtful(*turn, at(310));
   EXPECT_FALSE(status(TURNS, 315).told_after_turn) << "asked for before it got lost";
   EXPECT_TRUE(status(TURNS, 330).told_after_turn);
-  EXPECT_THAT(status(words(true, false), 340).judgement.stop_reason, HasSubstr("turn round"));
+  EXPECT_THAT(status(words(true, false), 340).judgement.stop_reason, HasSubstr("to reverse"));
 }
 
 // --- commanded against actual ----------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-/// What lasts is told as it is; what passes, as something that was.
+/// What lasts is reported in the present tense; what has passed, in the past.
 std::string otherText(std::uint16_t error_id, const std::string& reasons)
 {
   switch (error_id)

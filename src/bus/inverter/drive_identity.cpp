@@ -12,7 +12,7 @@ DriveIdentity::DriveIdentity(const drive::Drive& drive, std::uint8_t station) : 
   {
     wants_model_ = wants_model_ || !expectation.model.empty();
   }
-  // A model that nobody judges is still worth showing.
+  // A model that is not checked is still worth showing.
   wants_model_ = wants_model_ || drive.readAttributes(station).has_value();
 }
 

@@ -45,8 +45,8 @@ void DriveSettings::underCommand(bool in_force)
   in_force ? settings_.commanded() : settings_.released();
 }
 
-/// The step of the sequence `connect` that is due: a drive that is another one than expected is told nothing, and what tells
-/// whether it is goes before.
+/// The step of the sequence `connect` that is due: a drive other than the expected one is sent nothing, and the reads that
+/// show whether it is go first.
 const drive::Step* DriveSettings::connectStep() const
 {
   const bool right = identity() == Identity::Right && !settings_.urgent();

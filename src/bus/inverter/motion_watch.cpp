@@ -13,7 +13,7 @@ namespace
 {
 // At reversal a drive may show "stopped" for a moment: only a longer one means that it lost its RUN.
 constexpr double OPERATION_LOST_S = 0.5;
-// Below this a drive may legitimately stand still with RUN on (start frequency).
+// Below this a drive may legitimately be at rest with RUN on (start frequency).
 constexpr double LOWEST_JUDGED_HZ = 1.0;
 constexpr double MOVEMENT_PATIENCE_S = 3.0;
 constexpr double DEVIATION_PATIENCE_S = 2.0;
@@ -28,7 +28,7 @@ void watch(std::optional<TimePoint>& since, bool condition, TimePoint now)
   since = condition ? since.value_or(now) : std::optional<TimePoint>();
 }
 
-/// Words that were asked for before our last change of RUN say nothing about it.
+/// Words requested before this node last changed RUN say nothing about it.
 bool isEvidence(const Observation& seen)
 {
   return seen.sent_at >= seen.movement.runChangedAt();
@@ -57,7 +57,7 @@ MotionVerdict MotionWatch::judge(const Observation& seen)
 void MotionWatch::judgeTrip(const Observation& seen, MotionVerdict& verdict)
 {
   Judgement& judgement = verdict.judgement;
-  // A status that can't tell of a trip does not end one.
+  // A status that can't show a trip does not end one.
   const bool tripped = seen.words.tripped().value_or(seen.complete && seen.faulted);
   const bool is_new = tripped && !seen.faulted;
   if (!seen.complete)
@@ -151,7 +151,7 @@ void MotionWatch::judgeOperation(const Observation& seen, MotionVerdict& verdict
   }
 }
 
-/// No RUN of ours is on. A motor that runs out after our stop is no surprise; one that starts from rest is.
+/// No RUN from this node is on. A motor that coasts down after its stop is no surprise; one that starts from rest is.
 void MotionWatch::judgeUncommanded(const Observation& seen, bool operation, MotionVerdict& verdict)
 {
   operation_seen_ = false;

@@ -64,8 +64,8 @@ void GatewayTraffic::note(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// Whoever has kept the gateway waits until everybody else was refreshed once, counted from when it is free again: else only
-/// one exchange would go between two blocks.
+/// An inverter that has blocked the gateway waits until every other one was refreshed once, counted from when it is free
+/// again: otherwise only one exchange would go between two blocks.
 void GatewayTraffic::othersFirst(TimePoint free_at, Inverter& inverter)
 {
   // Not where its own time-out would pass meanwhile.
@@ -76,7 +76,7 @@ void GatewayTraffic::othersFirst(TimePoint free_at, Inverter& inverter)
   }
 }
 
-/// Once: what it does differs from what its users expect.
+/// Once: its behaviour differs from what users expect.
 void GatewayTraffic::tell()
 {
   if (bus_.gateway.silentByNature() && !told_of_gateway_)
@@ -109,7 +109,7 @@ Gate GatewayTraffic::gate(TimePoint now)
   return gate;
 }
 
-/// The running inverter with the shortest time-out of its own, if a silent station keeps the gateway for longer than that.
+/// The running inverter with the shortest time-out of its own, if a silent station blocks the gateway for longer than that.
 const Inverter* GatewayTraffic::endangered() const
 {
   const Inverter* first = nullptr;
@@ -126,7 +126,7 @@ const Inverter* GatewayTraffic::endangered() const
   return first;
 }
 
-/// Contract, 8.8: a stop of an inverter that may run goes in spite of what that does to its neighbours, with one WARN.
+/// Contract, 8.8: a stop of an inverter that may run goes in spite of its effect on its neighbours, with one WARN.
 void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
 {
   const Inverter* const neighbour = inverter.link.silent() && !bus_.shutting_down ? endangered() : nullptr;
@@ -190,7 +190,7 @@ Duration GatewayTraffic::worstStop() const
   return wire + static_cast<int>(silent) * block();
 }
 
-/// For how long a silent station keeps the gateway: as measured, or as configured until it is.
+/// For how long a silent station blocks the gateway: as measured, or as configured until then.
 Duration GatewayTraffic::block() const
 {
   return bus_.gateway.block() > Duration::zero() ? bus_.gateway.block() : bus_.gateway.wait();
@@ -231,7 +231,7 @@ std::optional<Finding> GatewayTraffic::finding() const
                       util::durationText(allowed) + ")" };
 }
 
-/// What it does to numbers and units, so that replies are told apart by their shapes alone.
+/// What it does to numbers and units, if replies can be told apart by their shapes alone.
 std::optional<Finding> GatewayTraffic::quirkFinding() const
 {
   const std::string& quirk = bus_.line_watch.facts().gateway_quirk;

@@ -83,7 +83,7 @@ bool WriteParameterJob::needsRest() const
 
 bool WriteParameterJob::lasting() const
 {
-  // What the manual does not say may reach it.
+  // Where the manual does not say, it may reach the EEPROM.
   const bool ram = phase_ == Phase::Write && drive_.profile().writes == drive::Writes::Ram;
   return phase_ != Phase::Busy && !ram;
 }
@@ -99,7 +99,7 @@ Job::Progress WriteParameterJob::lost(const wire::Reply& reply)
   {
     return Job::lost(reply);
   }
-  // The drive must not stay in its setup area: leave it, until the bound ends the trying.
+  // The drive must not stay in its setup area: leave it, and keep trying until the bound is over.
   refused_id_ = refused_id_ != 0 ? refused_id_ : reply.error_id;
   refused_ = refused_.empty() ? "writing " + parameter_.name + ": " + errorText(reply.error_id) : refused_;
   answer().error_id = refused_id_;

@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-/// What a chip that delivers at once shows, and one more.
+/// What a chip that delivers at once shows, plus one.
 constexpr double LONGEST_S = 0.002;
 }  // namespace
 

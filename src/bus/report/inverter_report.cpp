@@ -28,7 +28,8 @@ void showExchangeError(const Inverter& inverter, InverterStatus& status)
   status.error_text = exchangeText(inverter);
 }
 
-/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
+/// The most informative one: why it is offline or locked rather than that it is, a command's own rather than a single
+/// exchange's.
 void showError(const Inverter& inverter, TimePoint now, InverterStatus& status)
 {
   const bool exchange_failed = inverter.link.error() != 0;
@@ -100,14 +101,14 @@ std::vector<Finding> errorsOf(const Inverter& inverter, TimePoint now)
   return findings;
 }
 
-/// The set-point goes to the EEPROM, because the drive could not be told otherwise at connect.
+/// The set-point goes to the EEPROM, because the drive could not be set otherwise at connect.
 bool writesWear(const Inverter& inverter)
 {
   return inverter.drive.wears("frequency") && !inverter.settings.connected() &&
          inverter.drive.sequence("forward") != nullptr;
 }
 
-/// What the profile leaves open, or the drive does not do as the profile could.
+/// What the profile leaves open, or the drive does not do although the profile could.
 std::vector<std::string> profileWarnings(const Inverter& inverter)
 {
   std::vector<std::string> warnings;

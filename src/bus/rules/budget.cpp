@@ -194,7 +194,7 @@ Duration Budget::longestExchange() const
       longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
-  // One that breaks off, or pauses, ends a pause later.
+  // A reply that breaks off, or pauses, ends a pause later.
   return longest + line_.patience();
 }
 
@@ -325,7 +325,7 @@ Duration Budget::longestReturn(Duration block, std::size_t offline)
   return seconds(std::max(RETURN_S, static_cast<double>(std::max<std::size_t>(offline, 1)) * each));
 }
 
-/// Contract, 8.8: what the probes' share makes of 3.7 where the gateway is kept for long.
+/// Contract, 8.8: what the probes' share means for 3.7 where the gateway is blocked for long.
 std::optional<Finding> Budget::returnBehindGateway() const
 {
   const Duration block = seconds(configuration_.bus.gateway_timeout);
@@ -341,7 +341,7 @@ std::optional<Finding> Budget::returnBehindGateway() const
                       " if it does so for " + util::durationText(seconds(SHORT_BLOCK_S)) + " at most" };
 }
 
-/// Contract, 8.3: the share is small; who wants fresher values leaves others out.
+/// Contract, 8.3: the share is small; fresher values are had by leaving others out.
 std::optional<Finding> Budget::slowFinding() const
 {
   const Duration period = slowPeriod();

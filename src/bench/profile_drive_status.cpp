@@ -61,7 +61,7 @@ void ProfileDrive::showField(const std::string& field, const Item& item)
   });
   if (commanded)
   {
-    return;  // it tells what was written
+    return;  // it reports what was written
   }
   if (const auto value = quantity(field, item))
   {

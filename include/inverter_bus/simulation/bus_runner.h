@@ -34,15 +34,15 @@ public:
   BusRunner(const BusRunner&) = delete;
   BusRunner& operator=(const BusRunner&) = delete;
 
-  /// Also reads commands, one a line, from this descriptor; its end ends nothing. \p answer gets the answer to each, in the
-  /// thread of run(). Call it before run().
+  /// Also reads commands, one a line, from this descriptor; its end does not end the program. \p answer gets the answer
+  /// to each, in the thread of run(). Call it before run().
   void readCommands(int descriptor, std::function<void(const std::string&)> answer);
 
   /// The parity that the client is taken to use, whatever its terminal shows (see terminal_settings.h). Call it before run().
   void assumeParity(Parity parity);
 
-  /// The last \p lead seconds of each wait are spent looking at the clock, which is less late than the kernel's timers and
-  /// costs so much of a core; 0: never. Call it before run().
+  /// The last \p lead seconds of each wait are spent polling the clock, which is less late than the kernel's timers and
+  /// costs that much of a core; 0: never. Call it before run().
   void spin(double lead);
 
   /// Returns after stop(). \p realtime_priority 1 to 99: SCHED_FIFO for the calling thread, where that is permitted; 0: as

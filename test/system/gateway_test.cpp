@@ -723,7 +723,7 @@ TEST_F(BesideAShortTimeOut, theStopOfAnOfflineInverterGoesAndIsWarnedOfOnce)
   EXPECT_EQ(warnings(), 1U);
   EXPECT_THAT(bus_->logTexts(),
               Contains(AllOf(HasSubstr("b: offline, but it may run"), HasSubstr("blocks the gateway for 1.5"),
-                             HasSubstr("time-out of a itself"), HasSubstr("800 ms"))));
+                             HasSubstr("time-out of a, which is running"), HasSubstr("800 ms"))));
   bus_->world("b online");
   ASSERT_TRUE(bus_->runUntil(60.0, [&] { return online(B) && !bus_->status(B).stop_active; }));
   EXPECT_EQ(bus_->motor("b", "run_coil"), 0.0);

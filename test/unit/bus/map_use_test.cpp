@@ -142,7 +142,7 @@ TEST_F(Mx2Map, aDriveThatRefusesHasNone)
   EXPECT_EQ(nullptr, table_.next());
   EXPECT_TRUE(table_.refused());
   EXPECT_FALSE(table_.fits());
-  EXPECT_THAT(map_.whyNot(table_), HasSubstr("may have none"));
+  EXPECT_THAT(map_.whyNot(table_), HasSubstr("may have no map"));
 }
 
 TEST_F(Mx2Map, nobodyReadsItUnasked)

@@ -333,7 +333,7 @@ TEST_F(Mx2Motion, anotherSpeedThanCommandedIsAWarningOnceTheDriveSaysThatItIsThe
   EXPECT_THAT(watch_.warnings(at(5000)), IsEmpty()) << "it accelerates";
   slow.at_speed = true;
   status(slow, 5100);
-  EXPECT_THAT(watch_.warnings(at(7100)), ElementsAre(HasSubstr("another speed")));
+  EXPECT_THAT(watch_.warnings(at(7100)), ElementsAre(HasSubstr("a speed other than commanded")));
 }
 }  // namespace
 }  // namespace bus

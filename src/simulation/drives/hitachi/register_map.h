@@ -44,7 +44,7 @@ public:
   bool on() const;
   /// \p number is an external one, whatever its slot is worth.
   bool covers(std::uint16_t number) const;
-  /// Null where the drive can't use the slot of \p number: no internal register, or the number stands in two slots.
+  /// Null where the drive can't use the slot of \p number: no internal register, or the number is in two slots.
   const Slot* slot(std::uint16_t number) const;
 
 private:

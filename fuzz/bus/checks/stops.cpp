@@ -112,7 +112,7 @@ void Stops::sent(TimePoint now)
 void Stops::measure(TimePoint now, TimePoint due, TimePoint sent_before)
 {
   ++checked_;
-  // Stops that were asked for together go one after the other: the first one tells the latency.
+  // Stops that were asked for together go one after the other: the first one shows the latency.
   worst_ = sent_before < due ? std::max(worst_, now - due) : worst_;
 }
 

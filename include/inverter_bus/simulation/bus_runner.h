@@ -27,7 +27,7 @@ namespace simulation
 class BusRunner
 {
 public:
-  /// Opens the terminal under the name \p link. \p bus must outlive the runner, is used by nobody else while run() runs, and
+  /// Opens the terminal under the name \p link. \p bus must outlive the runner, is not used elsewhere while run() runs, and
   /// should start now. \throws std::runtime_error when terminal or link can't be made
   BusRunner(SimulatedBus& bus, const std::string& link);
   ~BusRunner();

@@ -110,7 +110,7 @@ private:
 };
 
 /// Clears a trip. Sends nothing that could start a motor: RUN is read back as off directly before the reset. Where the
-/// drive can't tell, the coordinator has a stop confirmed first.
+/// drive can't report RUN, the coordinator has a stop confirmed first.
 class ResetJob : public Job
 {
 public:

@@ -16,7 +16,7 @@ namespace bus
 /// What the drive says about itself, compared with what its profile expects.
 enum class Identity
 {
-  /// It fits, or the profile has nothing to tell it from another drive by.
+  /// It fits, or the profile has nothing that distinguishes it from another drive.
   Right,
   /// It has not been asked yet.
   Unknown,

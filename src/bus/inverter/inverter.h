@@ -88,7 +88,7 @@ public:
   // --- requests -----------------------------------------------------------------------------------------------------
   /// \p request with the time-outs and silences of this inverter.
   wire::Request prepared(wire::Request request) const;
-  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
+  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has reported its status
   /// (contract, 8.8).
   bool loopbackUsable() const;
   /// A keep-alive may repeat the confirmed command words (contract, 4.1).

@@ -18,7 +18,7 @@ struct Judgement
 {
   /// Stop the inverter and lock it; empty: no reason to.
   std::string stop_reason;
-  /// RUN is on although a command of 0 took it off: insist, without a lock.
+  /// RUN is on although a command of 0 took it off: keep stopping it, without a lock.
   bool zero_failed = false;
   /// The trip is new; its reason in words.
   bool tripped = false;

@@ -16,7 +16,7 @@ namespace bus
 /// The mode of this number (srv/Stop.srv); empty: there is none.
 std::optional<StopMode> stopModeOf(std::uint8_t number);
 
-/// The stop of one inverter (contract, rules 3.1 to 3.3): write RUN off, read back that it is off, and insist until both
+/// The stop of one inverter (contract, rules 3.1 to 3.3): write RUN off, read back that it is off, and keep trying until both
 /// have happened. It knows no priority and no time-out; the scheduler decides when its next exchange goes.
 class StopJob
 {

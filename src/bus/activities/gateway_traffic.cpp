@@ -201,8 +201,7 @@ std::string GatewayTraffic::returnText() const
 {
   if (const Inverter* const neighbour = endangered())
   {
-    return "not while " + neighbour->config.name +
-           " is running: its own time-out is shorter than the gateway is blocked";
+    return "not while " + neighbour->config.name + " runs: its own time-out is shorter than the gateway's block";
   }
   const auto offline = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
                                      [](const auto& inverter) { return inverter->link.offline(); });

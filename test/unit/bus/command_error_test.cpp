@@ -43,7 +43,7 @@ TEST(CommandError, aLockOfATripWantsAResetFirst)
   error.set(ERROR_LOCKED, lockedText(true), locked(true));
   EXPECT_THAT(error.text(locked(true), ""), AllOf(HasSubstr("tripped"), HasSubstr("call reset, then send 0")));
   EXPECT_EQ(error.text(locked(), ""), lockedText(false)) << "it was reset";
-  EXPECT_THAT(error.text(NONE, ""), AllOf(HasSubstr("was locked"), HasSubstr("free now")));
+  EXPECT_THAT(error.text(NONE, ""), AllOf(HasSubstr("was locked"), HasSubstr("unlocked now")));
 }
 
 TEST(CommandError, aTripAfterTheRefusalOfALockIsTold)

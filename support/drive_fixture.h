@@ -21,7 +21,7 @@ namespace inverter_bus
 {
 namespace drive
 {
-/// The profiles as shipped; CMake tells where.
+/// The profiles as shipped; CMake passes the path.
 inline std::string profileDirectory()
 {
   return std::string(INVERTER_BUS_ROOT) + "/config/drives";

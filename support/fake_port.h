@@ -15,7 +15,7 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// Time that passes only when somebody waits.
+/// Time that passes only during a wait.
 class VirtualClock : public util::Clock
 {
 public:

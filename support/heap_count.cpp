@@ -12,7 +12,7 @@ namespace heap
 {
 namespace
 {
-/// Stands before each block. As large as the strictest alignment that plain operator new promises.
+/// Precedes each block. As large as the strictest alignment that plain operator new promises.
 struct alignas(std::max_align_t) Header
 {
   std::size_t size;

@@ -11,7 +11,7 @@ namespace inverter_bus
 {
 namespace heap
 {
-/// For whom a block was taken; it counts as his until it is given back, whoever does that.
+/// The owner of a block; it counts as the owner's until it is freed, no matter where.
 enum class Owner
 {
   OTHERS,

@@ -19,7 +19,7 @@ namespace
 {
 constexpr double STREAM_PERIOD_S = 0.1;
 constexpr double LONGEST_PAUSE_S = 0.8;
-/// The quiet minute fills the flight recorder anew: what it holds is the same at every end.
+/// The quiet minute refills the flight recorder: what it holds is the same at every end.
 constexpr double BACK_S = 10.0;
 constexpr double ANSWERED_S = 15.0;
 constexpr double QUIET_S = 60.0;

@@ -53,7 +53,7 @@ struct Events
   unsigned long dumps = 0;
 };
 
-/// The whole core in virtual time, with users and faults by chance. Nothing that it tells is kept, it is only counted.
+/// The whole core in virtual time, with users and faults by chance. What it reports is not kept, only counted.
 class Story
 {
 public:
@@ -61,8 +61,8 @@ public:
   Story(const Stage& stage, const std::string& profiles, std::uint64_t seed);
   ~Story();
 
-  /// Users and faults for so long; then everything is mended and stopped, and the bus is left alone for a minute: two ends
-  /// of it are the same phase.
+  /// Users and faults for so long; then everything is repaired and stopped, and the bus is left alone for a minute: so all
+  /// stories end in the same state.
   void play(double duration);
 
   const Events& events() const;
@@ -70,7 +70,7 @@ public:
   std::uint64_t reconnects() const;
   /// Bus time since the beginning [s].
   double time() const;
-  /// Nobody waits for an answer, every inverter is online, and none is running.
+  /// No caller waits for an answer, every inverter is online, and none is running.
   bool calm() const;
 
 private:

@@ -18,7 +18,7 @@ namespace inverter_bus
 {
 namespace wire
 {
-/// A line at 19200 8N1 on virtual time, Modbus RTU unless told otherwise. A character takes 521 us, the gap 1.8 ms, a
+/// A line at 19200 8N1 on virtual time, Modbus RTU unless set otherwise. A character takes 521 us, the gap 1.8 ms, a
 /// read request 4.2 ms.
 class LineFixture : public testing::Test
 {

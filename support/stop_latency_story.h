@@ -26,7 +26,7 @@ public:
   enum class Death
   {
     Silent,
-    /// They answer when nobody waits any more.
+    /// They answer when they are no longer waited for.
     Late,
     /// Their replies end in the middle.
     Broken
@@ -47,7 +47,7 @@ public:
   /// From the acceptance of each stop of a living inverter to the first byte of its frame, in the order of time. Fewer than
   /// planned: a stop did not come at all.
   std::vector<Duration> play();
-  /// What the node says of it: acceptance to first byte, the worst.
+  /// What the node reports of it: acceptance to first byte, the worst.
   Duration worstTold();
 
 private:

@@ -315,7 +315,7 @@ public:
     clearFrames();
   }
 
-  /// What the flight recorder is told beside the frames.
+  /// What the flight recorder gets beside the frames.
   const std::vector<bus::TraceEvent>& events() const
   {
     return events_;

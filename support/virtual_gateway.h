@@ -18,7 +18,7 @@ namespace inverter_bus
 {
 /// A Modbus TCP gateway before the simulated line, in virtual time, as a port of the driver. Written from the Modbus
 /// specifications, with what real gateways do beside them: one request after the other on the line, a time-out of its own
-/// that keeps everybody waiting, codes of its own, connections that it ends.
+/// that keeps all others waiting, codes of its own, connections that it ends.
 class VirtualGateway : public wire::Port
 {
 public:
@@ -52,9 +52,9 @@ public:
     bool mute = false;
     /// The next so many requests are neither carried out nor answered.
     int swallow = 0;
-    /// Nobody listens.
+    /// Nothing listens at its port.
     bool gone = false;
-    /// [s] until a connection stands.
+    /// [s] until a connection is made.
     double connecting = 0.0;
     Number number = Number::Same;
     std::optional<int> unit;
@@ -93,7 +93,7 @@ public:
   {
     return deepest_;
   }
-  /// A request of which we have given up waiting is on the line.
+  /// A request that the driver no longer waits for is on the line.
   bool busy() const
   {
     return busy_;
@@ -239,7 +239,7 @@ public:
     }
   }
 
-  /// The gateway works on while nobody is connected to it.
+  /// The gateway works on while nothing is connected to it.
   void pump()
   {
     while (pumpOnce())
@@ -377,7 +377,7 @@ private:
     bus_.send(frame, now);
     ++tried_;
     const bool broadcast = job_.body[0] == 0;
-    // A broadcast is over when it has left; nobody answers it.
+    // A broadcast is over when it has left; no drive answers it.
     give_up_at_ = now + seconds((broadcast ? 0.02 : behaviour.silence) + behaviour.slow);
   }
 

@@ -9,7 +9,7 @@
 
 namespace inverter_bus
 {
-/// A converter in telnet mode before the simulated line (RFC 854): it negotiates as soon as somebody connects, and doubles
+/// A converter in telnet mode before the simulated line (RFC 854): it negotiates as soon as a client connects, and doubles
 /// every FFH that it passes on.
 class VirtualTelnet : public VirtualPort
 {

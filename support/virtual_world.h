@@ -13,11 +13,11 @@
 #include "inverter_bus/util/clock.h"
 #include "inverter_bus/wire/port.h"
 
-// What a whole bus in virtual time stands on; for the unit tests and for the fuzz program (fuzz/).
+// The basis of a whole bus in virtual time; for the unit tests and for the fuzz program (fuzz/).
 
 namespace inverter_bus
 {
-/// Virtual time with appointments: what somebody does at an instant happens at that instant, also in the middle of an
+/// Virtual time with appointments: what is to be done at an instant happens at that instant, also in the middle of an
 /// exchange.
 class AppointedClock : public util::Clock
 {

@@ -8,7 +8,7 @@ namespace fuzz
 {
 namespace
 {
-/// First the check, then who has called.
+/// First the check, then the caller.
 Calls::Callback both(const Calls::Callback& check, const Calls::Callback& answered)
 {
   return [check, answered](const bus::Answer& answer) {

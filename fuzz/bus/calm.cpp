@@ -128,7 +128,7 @@ void Calm::resetAll()
   }
 }
 
-/// A drive that was reset starts anew, and is read before it gets a command: a refused command is retried.
+/// A drive that was reset restarts, and is read before it gets a command: a refused command is retried.
 void Calm::startAll()
 {
   std::vector<bool> started(stage_.inverters(), false);
@@ -165,7 +165,7 @@ void Calm::runAll()
   stage_.streaming = false;
 }
 
-/// A drive that tells late that it had started anew is stopped and locked once more: its user is silent, and tries
+/// A drive that reports late that it had restarted is stopped and locked once more: its user is silent, and tries
 /// again.
 void Calm::startAgain(std::size_t index, int& times)
 {

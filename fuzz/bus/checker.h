@@ -38,7 +38,7 @@ public:
   Checker(const Scene& scene, simulation::SimulatedBus& bus, const util::Clock& clock,
           std::function<bool(std::size_t)> budget_warns);
 
-  /// Where it is told what happens.
+  /// Where it learns what happens.
   LineWatch& line();
   UserWatch& users();
   StatusWatch& statuses();

@@ -37,7 +37,7 @@ namespace inverter_bus
 namespace fuzz
 {
 /// What one bus is checked by: the real drives, the record of what was seen from outside, and a check for each
-/// property. Checks read the record and know nothing of each other; the watches tell them what happens, in an order
+/// property. Checks read the record and know nothing of each other; the watches report to them what happens, in an order
 /// that matters: a check that compares with what was before comes ahead of the record.
 struct Checks
 {
@@ -45,7 +45,7 @@ struct Checks
   Checks(const Scene& scene, simulation::SimulatedBus& bus, const util::Clock& clock,
          std::function<bool(std::size_t)> budget_warns);
 
-  /// Everybody must return to neutral before this inverter moves again; \p by_stop: and its stop must be confirmed.
+  /// All publishers must return to neutral before this inverter moves again; \p by_stop: and its stop must be confirmed.
   void lockUp(TimePoint now, std::size_t index, bool by_stop);
   /// Its order is void.
   void forbid(TimePoint now, std::size_t index);

@@ -75,7 +75,7 @@ bool Driver::budgetWarns(TimePoint now, std::size_t index) const
 {
   const bus::Report report = coordinator.report(now);
   const auto warns = [](const bus::Finding& finding) {
-    return finding.text.find("can't be met for certain") != std::string::npos;
+    return finding.text.find("can't be kept with certainty") != std::string::npos;
   };
   const auto& findings = report.inverters[index].findings;
   return std::any_of(findings.begin(), findings.end(), warns) ||

@@ -17,7 +17,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// A port that tells the checker of every request before its first byte leaves.
+/// A port that reports every request to the checker before its first byte leaves.
 class WatchedPort : public VirtualPort
 {
 public:

@@ -299,7 +299,7 @@ ReplyKind readCompowayReply(const Bytes& request, const Bytes& reply, unsigned& 
   }
   const std::string question = simulation::compowayBody(*asked);
   const std::string body = simulation::compowayBody(*found);
-  // Node, subaddress, end code, service, response code. End code 0F: not carried out, and the response code tells why.
+  // Node, subaddress, end code, service, response code. End code 0F: not carried out, and the response code says why.
   const bool told = body.size() >= 14 && (body.substr(4, 2) == "00" || body.substr(4, 2) == "0F");
   if (!told || question.size() < 9 || body.substr(0, 2) != question.substr(0, 2) ||
       body.substr(6, 4) != question.substr(5, 4))

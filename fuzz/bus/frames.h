@@ -36,7 +36,7 @@ struct RequestFacts
   bool reads_run = false;        ///< the RUN command as the drive holds it from the bus
   bool reads_slow = false;       ///< nothing but voltages, torque, temperature, warnings
   bool reads_parameter = false;  ///< no status: settings, trip memory, parameters
-  /// Tells the drive once after it has come how it is to work (VF-S15: FA87); in the lowest class, as settings are
+  /// Sets once how the drive is to work, after it has come (VF-S15: FA87); in the lowest class, as settings are
   /// read.
   bool writes_setting = false;
   unsigned address = 0;
@@ -48,7 +48,7 @@ struct RequestFacts
   }
 };
 
-/// Whose station this is.
+/// The inverter with this station.
 std::optional<std::size_t> inverterAt(const Scene& scene, unsigned station);
 
 /// The inverter whose station a reply bears.

@@ -30,7 +30,7 @@ void Game::play(Duration duration)
   World& world = stage_.world;
   if (stage_.dice.hits(0.1) && world.scene().inverters.front().brand == Brand::HITACHI)
   {
-    // Somebody has left RUN on.
+    // A RUN was left on.
     world.provoke("bus foreign 01 05 00 00 FF 00");
     world.pass(seconds(0.3));
   }

@@ -93,7 +93,7 @@ void Harm::harmDrive(std::size_t index)
   }
 }
 
-/// Somebody uses the panel of a drive.
+/// The panel of a drive is used.
 void Harm::takeOver(std::size_t index)
 {
   World& world = stage_.world;

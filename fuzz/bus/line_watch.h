@@ -10,7 +10,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// Tells the checks what happens on the line.
+/// Reports to the checks what happens on the line.
 class LineWatch
 {
 public:
@@ -22,9 +22,9 @@ public:
   void sending(TimePoint now, const simulation::Bytes& frame);
   /// Bytes have come out at the master's end.
   void heard(TimePoint now);
-  /// The driver has done with the exchange that it began since the last call, if any; nothing is in flight now.
+  /// The driver has finished the exchange that it began since the last call, if any; nothing is in flight now.
   void stepped(TimePoint now);
-  /// A frame of anybody is over.
+  /// A frame of any sender is over.
   void frame(TimePoint now, const simulation::FrameRecord& frame);
 
 private:

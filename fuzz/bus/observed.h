@@ -132,7 +132,7 @@ struct Observed
 
   /// Shown as online, and the port is there.
   bool online(std::size_t index) const;
-  /// A latched message that this publisher had sent before it was connected once more.
+  /// A latched message that this publisher had sent before it reconnected.
   bool isRepeat(std::size_t index, const bus::Publisher& publisher) const;
   /// Silence that a 3G3JE wants between the decision and the first byte.
   Duration quiet() const;

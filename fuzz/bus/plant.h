@@ -22,7 +22,7 @@ struct Truth
   std::optional<double> torque;  ///< [%] unsigned; not every simulated drive has it
 };
 
-/// The simulated drives as they really are, whatever anybody was told of them.
+/// The simulated drives as they really are, whatever was reported of them.
 class Plant
 {
 public:
@@ -33,7 +33,7 @@ public:
   Truth truth(std::size_t index) const;
   /// The drive holds a RUN.
   bool runLatched(std::size_t index) const;
-  /// What `show` tells of a drive; empty: it has no such key.
+  /// What `show` says of a drive; empty: it has no such key.
   std::string value(std::size_t index, const std::string& key) const;
   /// A value of `show` that is yes or no.
   bool flag(std::size_t index, const std::string& key) const;

@@ -11,7 +11,7 @@ namespace fuzz
 namespace
 {
 constexpr std::size_t LONGEST_NOISE = 8;
-// A VF-S15 starts anew; no profile says more.
+// A VF-S15 restarts; no profile says more.
 constexpr double DEAF_AFTER_RESET_S = 3.0;
 constexpr double PAUSE_S = 0.025;  // contract, 8.12
 constexpr double LEAST_PAUSE_S = 0.001;
@@ -76,7 +76,7 @@ void Recorder::begins(TimePoint now, const simulation::Bytes& request)
   }
   RequestFacts& facts = exchange.facts;
   const InverterRecord& inverter = observed_.inverters[*facts.inverter];
-  // MX2 and RX have a coil of its own for the direction: RUN says nothing of it.
+  // MX2 and RX have a coil of its own for the direction: RUN says nothing about it.
   const bool undirected = scene_.inverters[*facts.inverter].brand == Brand::HITACHI;
   facts.reverse = facts.run && undirected ? inverter.order.hertz < 0.0 : facts.reverse;
   exchange.to_offline = inverter.told.any && !inverter.told.online;
@@ -106,7 +106,7 @@ void Recorder::sent(TimePoint now)
   // Words in force that are repeated with a refresh are no copies.
   if (facts.set_hertz && !(facts.run && words.shown))
   {
-    // A block write tells all words at once, also where it is selected between the set-point and RUN.
+    // A block write sends all words at once, also where it is selected between the set-point and RUN.
     int& copies = facts.run ? words.run_set_copies : words.set_copies;
     copies += exchange.precedes_command ? 0 : 1;
   }
@@ -168,7 +168,7 @@ void Recorder::reached(TimePoint now, std::size_t index, const simulation::Bytes
   last_heard = now;
   if (readRequest(scene_, request).reset)
   {
-    // It starts anew, and its supervision with it.
+    // It restarts, and its supervision with it.
     last_heard.reset();
   }
 }
@@ -186,7 +186,7 @@ ReplyFacts Recorder::replied(TimePoint now, const simulation::FrameRecord& frame
   station.reply_began = frame.time;
   const Exchange& exchange = observed_.exchange;
   ReplyFacts reply;
-  // Whether it was damaged, its check sum tells: what collided may be the noise before it.
+  // Its check sum shows whether it was damaged: what collided may be the noise before it.
   if (exchange.in_flight && station.exchange == exchange.number && exchange.facts.inverter == index)
   {
     const ReplyKind kind = readNoisyReply(exchange.request, frame.bytes, reply.refusal);
@@ -194,7 +194,7 @@ ReplyFacts Recorder::replied(TimePoint now, const simulation::FrameRecord& frame
     reply.kind = kind == ReplyKind::OTHER ? ReplyFacts::Kind::Nothing : ReplyFacts::Kind::Answer;
     return reply;
   }
-  // A stop is exempt from rule 3.9: the late reply to its first frame may stand for the second one.
+  // A stop is exempt from rule 3.9: the late reply to its first frame may pass for the second one's.
   const bool of_stop = station.exchange != 0 && readRequest(scene_, station.request).stop;
   if (of_stop && readNoisyReply(station.request, frame.bytes, reply.refusal) == ReplyKind::NORMAL)
   {
@@ -203,7 +203,7 @@ ReplyFacts Recorder::replied(TimePoint now, const simulation::FrameRecord& frame
   return reply;
 }
 
-/// Noise may stand before it.
+/// Noise may precede it.
 ReplyKind Recorder::readNoisyReply(const simulation::Bytes& request, const simulation::Bytes& reply,
                                    unsigned& refusal) const
 {
@@ -231,7 +231,7 @@ void Recorder::answered(TimePoint now, std::size_t index, const ReplyFacts& repl
                                                                 tellsTimeout(scene_.inverters[index], facts.address));
   inverter.stop.acknowledged = facts.stop && reply.good ? now : inverter.stop.acknowledged;
   noteWords(index, reply.good);
-  // The supply may have gone after the last byte, before anybody has looked at the reply.
+  // The supply may have gone after the last byte, before the node has looked at the reply.
   const Station& station = stations_[index];
   const bool latched = inverter.link.cut_at > station.reply_began ? station.latched_at_cut : plant_.runLatched(index);
   inverter.words.shown =

@@ -19,7 +19,7 @@ struct ReplyFacts
 {
   enum class Kind
   {
-    Nothing,   ///< damaged, too late, or nobody has asked for it
+    Nothing,   ///< damaged, too late, or not asked for
     Answer,    ///< to the exchange in flight
     LateStop,  ///< to a stop that is no longer waited for
   };
@@ -28,7 +28,7 @@ struct ReplyFacts
   unsigned refusal = 0;
 
   /// After a read of RUN nothing more can be learned of it. Refusals 1 to 3: the drive has no such read, and the
-  /// acknowledged write has to do.
+  /// acknowledged write must suffice.
   bool settlesRun() const
   {
     return good || refusal <= 3;
@@ -82,7 +82,7 @@ private:
   /// What only the reading of replies needs.
   struct Station
   {
-    std::uint64_t exchange = 0;  ///< in which the drive heard its last request; 0: none of ours
+    std::uint64_t exchange = 0;  ///< in which the drive heard its last request; 0: none of the node's
     simulation::Bytes request;
     TimePoint reply_began;
     bool latched_at_cut = false;  ///< RUN, just before its supply went

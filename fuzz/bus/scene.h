@@ -47,9 +47,9 @@ struct InverterFacts
   double max_velocity = 0.0;      ///< [user's unit] 0: the profile's
   double min_velocity = 0.0;      ///< [user's unit]
   bool saturates = false;         ///< limit: saturate; has a max_velocity then
-  /// Its profile is told of these trip codes only (0 among them): another one is a state that nobody knows.
+  /// Its profile has these trip codes only (0 among them): any other is an unknown state.
   std::set<int> listed_trips;
-  /// A parameter that nobody writes and that differs from drive to drive, and one that is written.
+  /// A parameter that is never written and differs from drive to drive, and one that is written.
   std::string fixed_parameter;
   double fixed_value = 0.0;
   std::string free_parameter;
@@ -81,7 +81,7 @@ struct Scene
   std::string title(std::size_t index) const;
   /// The longest exchange that this bus can make, from its figures alone.
   Duration longestExchange() const;
-  /// The longest time that a probe which nobody answers takes.
+  /// The longest time that an unanswered probe takes.
   Duration longestProbe() const;
   /// [s] that a request without an answer is waited for at the most.
   double longestSilence() const;

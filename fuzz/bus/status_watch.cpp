@@ -82,7 +82,7 @@ void StatusWatch::takeStatus(TimePoint now, const bus::InverterStatus& status)
 
 void StatusWatch::takeTrip(TimePoint now, std::size_t index)
 {
-  // The first of its reads may have told of the trip long before the last one.
+  // The first of its reads may have shown the trip long before the last one.
   const Told& told = checks_.observed.inverters[index].told;
   const TimePoint since = told.any ? told.status.stamp : now;
   checks_.lockUp(now, index, false);

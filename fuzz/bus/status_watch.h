@@ -12,7 +12,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// Tells the checks what the node publishes, and what it logs.
+/// Reports to the checks what the node publishes, and what it logs.
 class StatusWatch
 {
 public:

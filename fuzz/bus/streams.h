@@ -36,7 +36,7 @@ public:
   void send(std::size_t index, double hertz, const std::string& publisher);
   /// Any speed from any publisher, once.
   void sendAny(std::size_t index);
-  /// What nobody would call a movement, in the user's unit.
+  /// Too small to be called a movement, in the user's unit.
   double nearZero(std::size_t index);
 
 private:

@@ -14,7 +14,7 @@ namespace inverter_bus
 {
 namespace fuzz
 {
-/// Tells the checks what users do, and what they are answered.
+/// Reports to the checks what users do, and how they are answered.
 class UserWatch
 {
 public:

@@ -190,7 +190,7 @@ void Users::callReset(std::size_t index)
   stage_.world.calls().reset(index, nullptr);
   if (stage_.dice.hits(0.2))
   {
-    // Somebody else asks for it, too.
+    // Another caller asks for it, too.
     stage_.world.at(seconds(stage_.dice.between(0.0, 1.0)),
                     [this, index] { stage_.world.calls().reset(index, nullptr); });
   }

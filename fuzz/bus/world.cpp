@@ -205,7 +205,7 @@ void World::cutPower(std::size_t index, double duration)
   checker_.lostPower(clock_.now(), index);
   if (facts.brand == Brand::TOSHIBA)
   {
-    // It starts anew and is deaf for a second, however short the cut: only by that a driver can see it between two
+    // It restarts and is deaf for a second, however short the cut: only thus can a driver see it between two
     // exchanges that repeat the words in force (rule 4.1).
     provoke(facts.name + " power off");
     at(seconds(duration), [this, &facts] { provoke(facts.name + " power on"); });

@@ -46,7 +46,7 @@ public:
   /// A command of the simulated bus; where it can't happen now, nothing does.
   void provoke(const std::string& command);
   void cutPower(std::size_t index, double duration);
-  /// The replies to its reads of slow values get lost from now on; nothing: nobody's do any more.
+  /// The replies to its reads of slow values get lost from now on; nothing: no drive's do any more.
   void loseSlowReplies(std::optional<std::size_t> index);
   /// Noise, or frames of a second master.
   void disturb();

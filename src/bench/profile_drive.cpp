@@ -252,7 +252,7 @@ void ProfileDrive::obey(Space space, std::uint16_t first, std::size_t count)
   control();
 }
 
-/// The sequence whose words stand in the points; of several the one that says most. Nothing: they stand in between.
+/// The sequence whose words are in the points; of several, the most specific. Nothing: they are in between.
 std::optional<ProfileDrive::Motion> ProfileDrive::motionOfPoints() const
 {
   static const std::pair<const char*, Motion> COMMANDS[] = { { "stop", Motion::Rest },

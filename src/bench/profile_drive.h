@@ -22,10 +22,10 @@ namespace bench
 class ProfileMemory;
 
 /// A Modbus drive that does what its profile says and nothing else: its registers and coils are those that the profile names,
-/// the commands are the profile's sequences, the status tells what the motor does. So a slip in the profile (a wrong address, a
+/// the commands are the profile's sequences, the status reports what the motor does. So a slip in the profile (a wrong address, a
 /// wrong scale) is played along and not found: this rehearses an installation, it does not check a profile.
 ///
-/// What no profile tells is invented: ramps of 5 s for the whole range, a communication time-out that ramps the motor down
+/// What no profile says is invented: ramps of 5 s for the whole range, a communication time-out that ramps the motor down
 /// (unless the profile says that it runs on), trips that cut it and are over with the reset once RUN is off, settings that are
 /// as the profile wants them.
 class ProfileDrive : public simulation::ModbusSlave

@@ -61,7 +61,7 @@ void ProfileDrive::showField(const std::string& field, const Item& item)
   });
   if (commanded)
   {
-    return;  // it tells what was written
+    return;  // it reports what was written
   }
   if (const auto value = quantity(field, item))
   {
@@ -178,7 +178,7 @@ Refusal ProfileDrive::pressStopKey(TimePoint now)
 
 Refusal ProfileDrive::setSafeStop(bool /*active*/, TimePoint /*now*/)
 {
-  return "a profile tells nothing of safe torque off";
+  return "a profile says nothing about safe torque off";
 }
 
 void ProfileDrive::takeLoad(double load)

@@ -19,7 +19,7 @@ public:
   explicit ProfileMemory(const drive::Profile& profile);
 
   bool has(drive::Space space, std::uint16_t address) const;
-  /// 0 where nothing is.
+  /// 0 where there is nothing.
   std::uint16_t word(drive::Space space, std::uint16_t address) const;
   void setWord(drive::Space space, std::uint16_t address, std::uint16_t word);
 

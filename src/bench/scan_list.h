@@ -13,8 +13,8 @@ namespace inverter_bus
 {
 namespace bench
 {
-/// The room in which driver and simulation meet: the programs that simulate a bus judge its scan list by the driver's own rules,
-/// and play drives of which only a profile tells. The simulated drives themselves know nothing of it.
+/// The room in which driver and simulation meet: the programs that simulate a bus judge its scan list by the driver's own
+/// rules, and play drives that only a profile describes. The simulated drives themselves know nothing of it.
 
 /// A bus to simulate, and what the driver would say about its scan list.
 struct SimulatedScanList

@@ -52,10 +52,10 @@ po::options_description describeOptions()
       ("stop-bits", po::value<int>(), "1 | 2: those of the drives, instead of the file's")                          //
       ("client-parity", po::value<std::string>(),
        "none | even | odd: what the client uses, where its settings don't show it (pyserial)")           //
-      ("seed", po::value<std::uint64_t>()->default_value(1), "of everything that is left to chance")     //
+      ("seed", po::value<std::uint64_t>()->default_value(1), "of everything left to chance")             //
       ("realtime-priority", po::value<int>()->default_value(0), "> 0: SCHED_FIFO, for a punctual wire")  //
       ("spin", po::value<double>()->default_value(0.0, "0"),
-       "[s] looks at the clock for the last part of each wait, for a punctual wire without that right")  //
+       "[s] polls the clock in the last part of each wait: a punctual wire without that priority")  //
       ("turnaround", po::value<double>(), "[s] answer time of all drives after the silence");
   return options;
 }
@@ -209,7 +209,7 @@ int main(int argc, char** argv)
   }
   catch (const po::error& error)
   {
-    std::cerr << "simulated_bus: " << error.what() << "; simulated_bus --help shows what there is" << std::endl;
+    std::cerr << "simulated_bus: " << error.what() << "; simulated_bus --help lists the options" << std::endl;
     return EXIT_FAILURE;
   }
   catch (const std::exception& error)

@@ -145,7 +145,7 @@ void Bus::Implementation::run()
     std::unique_lock<std::mutex> lock(mutex);
     if (ending && coordinator.shutdownDone(clock.now()))
     {
-      // Under the same lock: a stop that is called a moment later would be named as one that could not be confirmed.
+      // Under the same lock: otherwise a stop called a moment later would be listed as not confirmed.
       unconfirmed = coordinator.endShutdown();
       return;
     }

@@ -12,12 +12,12 @@ namespace
 {
 // An adapter that is plugged in again is found within this time.
 constexpr double OPEN_PERIOD_S = 0.2;
-// A connection that its other end has closed is tried again so often, for as long as motors run on.
+// A connection that its other end has closed is retried at this period for as long as motors run on.
 constexpr double RESUME_PERIOD_S = 0.05;
-// Every try moves the RTS line of whoever has the port.
+// Every try moves the RTS line of the process that has the port.
 constexpr double IN_USE_PERIOD_S = 1.0;
 constexpr double IN_USE_PATIENCE_S = 30.0;
-// Somebody may set the adapter while the bus runs.
+// The adapter may be set while the bus runs.
 constexpr double ADAPTER_PERIOD_S = 5.0;
 
 /// What the coordinator may ask of a line.
@@ -127,7 +127,7 @@ TimePoint BusLoop::noteOpening(wire::OpenResult result, const std::string& error
   return now + seconds(coordinator_.resuming() ? RESUME_PERIOD_S : OPEN_PERIOD_S);
 }
 
-/// A port that was never ours may stay somebody else's; one that was will come back.
+/// A port that this node has never had may stay with another process; one that it has had will come back.
 void BusLoop::judgePatience(TimePoint now, bool in_use)
 {
   if (!in_use || ever_opened_)
@@ -148,13 +148,13 @@ void BusLoop::lookAtAdapter()
   }
   next_look_ = now + seconds(ADAPTER_PERIOD_S);
   const std::optional<wire::AdapterLatency> latency = line_.adapterLatency();
-  // What lies in the adapter is no pause of the drive.
+  // Time in the adapter is no pause of the drive.
   give_way_.pause = line_.timing().briefPause() + (latency ? latency->latency : Duration{ 0 });
   const std::lock_guard<std::mutex> guard(mutex_);
   coordinator_.noteAdapter(latency);
 }
 
-/// Reasons of ours to give up an open port and open it anew; true if there was one.
+/// This node's own reasons to give up an open port and reopen it; true if there was one.
 bool BusLoop::reopen()
 {
   bool abandon = false;

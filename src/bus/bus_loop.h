@@ -12,7 +12,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Joins the coordinator to a line: opens the port, asks for the next exchange, makes it, brings back its end. The thread
+/// Joins the coordinator to a line: opens the port, asks for the next exchange, makes it, reports its end. The thread
 /// around it lives in Bus; in virtual time a test calls step() itself.
 class BusLoop
 {

@@ -12,10 +12,11 @@ namespace bus
 {
 namespace
 {
-// A pick that turned out to have nothing to send is dropped; more in a row than this would be a mistake of ours.
+// A pick that turned out to have nothing to send is dropped; more in a row than this would be a mistake in this program.
 constexpr int MOST_EMPTY_PICKS = 100;
 constexpr double EMPTY_PICKS_PAUSE_S = 0.1;
-// A port that has stayed open for so long works, though nobody answers: even a lone dead inverter was probed meanwhile.
+// A port that has stayed open for this long works, even if no drive answers: even a lone dead inverter was probed
+// meanwhile.
 constexpr double PORT_WORKS_AFTER_S = 3.0;
 }  // namespace
 
@@ -44,7 +45,8 @@ bool Coordinator::tick(TimePoint now)
   return lost_one;
 }
 
-/// Looks for a jump of time. Only who watches for answers of drives forgives it; command watchdogs and locks go by the real time.
+/// Looks for a jump of time. Only the watches for drives' answers forgive it; command watchdogs and locks go by the real
+/// time.
 void Coordinator::noteRunning(TimePoint now)
 {
   const Duration frozen = freeze_.back(now);
@@ -232,18 +234,18 @@ void Coordinator::ended(const InFlight& current, const wire::Reply& reply)
     return;
   }
   noteReply(current, reply);
-  // A loop-back that is refused has put nothing into step: to a stop that is a failed attempt.
+  // A loop-back that is refused has synchronized nothing: for a stop that is a failed attempt.
   const bool refused_stop = current.pick.what == Pick::What::Stop && reply.outcome == wire::Outcome::Exception;
   if (current.resync && isAnswered(reply) && !refused_stop)
   {
-    // The line is in step again: the real request keeps its turn.
+    // The line is synchronized again: the real request keeps its turn.
     activities_.turns.finish(current, reply, true);
     return;
   }
   endedBy(current, reply);
 }
 
-/// What an exchange tells of its inverter and of the way to it, whatever it was for.
+/// What an exchange shows about its inverter and the way to it, whatever its purpose.
 void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
@@ -266,7 +268,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
     inverter.link.answered(reply);
     inverter.feeding.answered(current.request, reply.finished_at);
   }
-  // A probe that nobody answers says nothing of the loop-back: the drive is away.
+  // An unanswered probe says nothing about the loop-back: the drive is away.
   if (current.loopback && (current.resync || isAnswered(reply)))
   {
     inverter.loopback.note(reply.outcome);
@@ -277,7 +279,7 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// A stop has ended the wait (contract, 8.4): nobody knows what came of it, and nobody is to blame. It goes again in its
+/// A stop has ended the wait (contract, 8.4): its outcome is unknown, and no drive is to blame. It goes again in its
 /// turn.
 void Coordinator::cut(const InFlight& current, const wire::Reply& reply)
 {
@@ -308,7 +310,7 @@ void Coordinator::cut(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// What follows from it for the activity that it belongs to.
+/// What follows from it for the activity to which it belongs.
 void Coordinator::endedBy(const InFlight& current, const wire::Reply& reply)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];

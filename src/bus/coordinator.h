@@ -17,9 +17,9 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Hands each turn of the bus to one activity (src/bus/activities) and its end back to it: the scheduler decides whose turn it
-/// is. Time comes in as an argument; there is no thread, no clock and no I/O in it, so that the whole behaviour of a bus can
-/// be run in virtual time. Not thread safe: the bus guards it with one mutex.
+/// Hands each turn of the bus to one activity (src/bus/activities) and its end back to it: the scheduler decides whose
+/// turn it is. Time comes in as an argument; there is no thread, no clock and no I/O in it, so that the whole behaviour
+/// of a bus can be run in virtual time. Not thread safe: the bus guards it with one mutex.
 class Coordinator
 {
 public:
@@ -53,8 +53,8 @@ public:
   /// The next exchange to make right now; nothing: ask again at \p wake or when something was requested.
   /// \p line is not kept either.
   std::optional<Exchange> next(TimePoint now, const LineView& line, TimePoint& wake);
-  /// What time alone brings: command watchdogs, bounds, slow publications. Also while the port is closed. True: an inverter has just
-  /// gone offline, because its status has not come for too long.
+  /// What time alone brings: command watchdogs, bounds, slow publications. Also while the port is closed. True: an
+  /// inverter has just gone offline, because its status has not come for too long.
   bool tick(TimePoint now);
   /// The first byte of that exchange is leaving now.
   void sent(TimePoint now);
@@ -67,7 +67,7 @@ public:
   void lateReply(TimePoint now, const wire::LateReply& late);
   /// What the line has counted and found so far: before anything else that the line or the port has brought.
   void noteLine(TimePoint now, const LineFacts& facts);
-  /// What the open port tells of its adapter; nothing: its driver does not tell.
+  /// What the open port reports of its adapter; nothing: its driver does not say.
   void noteAdapter(const std::optional<wire::AdapterLatency>& latency);
 
   void portOpened(TimePoint now);
@@ -81,10 +81,10 @@ public:
   TimePoint openNotBefore() const;
   /// A connection that its other end closed is being opened again at once; motors run on.
   bool resuming() const;
-  /// The link is mute and is to be opened anew (renewing(), then abandon and open).
+  /// The link is mute and is to be reopened (renewing(), then abandon and open).
   bool renewalDue(TimePoint now);
   void renewing(TimePoint now);
-  /// It is opened anew for any other reason of ours: motors run on.
+  /// It is reopened for any other reason of this node's: motors run on.
   void reopening(TimePoint now);
   /// It leads to a telnet server, and everything that may be sent to one was: close it (closedForTelnet()).
   bool telnetOver(TimePoint now);
@@ -93,10 +93,10 @@ public:
   void beginShutdown(TimePoint now);
   /// All motors confirmed, or the time is up.
   bool shutdownDone(TimePoint now);
-  /// Answers whoever still waits with 0xB003; names what could not be confirmed.
+  /// Answers callers that still wait with 0xB003; names what could not be confirmed.
   std::vector<std::string> endShutdown();
 
-  // --- what it tells ------------------------------------------------------------------------------------------------
+  // --- what it reports ---------------------------------------------------------------------------------------------
   Outputs takeOutputs();
   PendingAnswers takeAnswers();
   Report report(TimePoint now) const;

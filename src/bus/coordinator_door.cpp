@@ -4,7 +4,7 @@
 
 #include "bus/coordinator.h"
 
-// The doors to the activities: what users ask for, what happens to the port, and what the bus tells.
+// The doors to the activities: what users ask for, what happens to the port, and what the bus reports.
 
 namespace inverter_bus
 {
@@ -177,7 +177,7 @@ std::vector<std::string> Coordinator::endShutdown()
   return activities_.shutdown.end();
 }
 
-// --- what it tells ---------------------------------------------------------------------------------------------------
+// --- what it reports ------------------------------------------------------------------------------------------------
 
 Outputs Coordinator::takeOutputs()
 {

@@ -24,8 +24,8 @@ bool isLastingRefusal(const wire::Reply& reply)
 {
   if (reply.outcome == wire::Outcome::Exception && reply.error_id < 0x8000)
   {
-    // CompoWay/F: service, length, area, address and count (0401, 10xx, 11xx) and read-only items (3003) speak of the
-    // request; an operation error (2203) speaks of the moment.
+    // CompoWay/F: service, length, area, address and count (0401, 10xx, 11xx) and read-only items (3003) concern the
+    // request; an operation error (2203) concerns the moment.
     const unsigned main_code = reply.error_id >> 8U;
     return main_code == 0x04 || main_code == 0x10 || main_code == 0x11 || main_code == 0x30;
   }

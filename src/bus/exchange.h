@@ -21,7 +21,7 @@ struct InFlight
   wire::Request request;
   /// Time that it occupies the line if it is answered at once.
   Duration cost{ 0 };
-  /// The same if nobody answers it, with the full time-out.
+  /// The same if it is not answered, with the full time-out.
   Duration full_wait{ 0 };
   /// A loop-back that makes sure that no late reply is on its way; the real request follows.
   bool resync = false;
@@ -39,7 +39,7 @@ struct InFlight
   bool moves = false;
   /// It may set RUN: a stop of the same inverter waits for its reply (contract, 8.4).
   bool may_start = false;
-  /// It reaches the drive's EEPROM, or resets it: it is waited for whatever comes (contract, 8.4).
+  /// It reaches the drive's EEPROM, or resets it: it is waited for in any case (contract, 8.4).
   bool lasting = false;
   /// Its reply is not waited for in full.
   bool brief = false;
@@ -57,7 +57,7 @@ inline InFlight exchangeFor(const Pick& pick)
   return current;
 }
 
-/// What the end of an exchange says of its inverter beyond the activity's own business; Absences draws the conclusion.
+/// What the end of an exchange says about its inverter beyond the activity's own concern; Absences draws the conclusion.
 enum class Ending
 {
   /// Nothing: it was answered, or its loss is no news.

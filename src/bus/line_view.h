@@ -9,9 +9,10 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// All that may be asked of the line: questions without side effects, while the next exchange is decided. The bus thread hands
-/// it to Coordinator::next(), and from there to whom needs it; nobody keeps it, so that what runs in other threads (requests,
-/// reports) can't get at a line that is in use. What they need to know of it LineWatch has copied.
+/// All that may be asked of the line: questions without side effects, while the next exchange is decided. The bus thread
+/// hands it to Coordinator::next(), and from there to the activities that need it; none keeps it, so that what runs in
+/// other threads (requests, reports) can't get at a line that is in use. What they need to know of it LineWatch has
+/// copied.
 class LineView
 {
 public:

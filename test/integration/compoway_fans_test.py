@@ -111,7 +111,7 @@ class FansOnOneLine(Fans):
     def testItSaysWhatItIs(self):
         for name in ('fan_1', 'fan_2'):
             self.assertEqual(self.bench[name].status.drive, 'omron_3g3je ' + MODEL)
-            wait_for(lambda: self.bench.value(name, 'model as the drive names itself') == MODEL, 'model of ' + name)
+            wait_for(lambda: self.bench.value(name, 'model reported by the drive') == MODEL, 'model of ' + name)
 
     def testAsShippedTheServicesSayWhatIsMissing(self):
         fan = self.bench['fan_1']

@@ -119,7 +119,7 @@ class Diagnostics(unittest.TestCase):
         with self.bench.run('belt_1', 10.0):
             try:
                 self.bench.simulate('belt_1 panel 15')
-                self.bench.finding('belt_1', 'another speed than commanded')
+                self.bench.finding('belt_1', 'a speed other than commanded')
                 self.bench.simulate('belt_1 panel -15')
                 self.bench.finding('belt_1', 'turns in the wrong direction')
             finally:

@@ -237,7 +237,7 @@ class MixedBrands(Brands):
         self.assertTrue(mixer.write_parameter('Bn-02', 0.5).success)
         self.assertRefused(mixer.read_parameter('Sn-36'), InverterStatus.ERROR_NOT_ARMED, 'Sn-36', 'overrides')
         self.assertRefused(mixer.write_parameter('Bn-04', 1.0), InverterStatus.ERROR_NOT_ARMED, 'Bn-04')
-        # Its manual doesn't say whether a write outlives a power-off.
+        # Its manual doesn't say whether a write survives a power-off.
         self.assertRefused(mixer.write_parameter('Bn-02', 1.0, persist=True), InverterStatus.ERROR_NOT_OFFERED)
 
     def testAStopOf7200maIsConfirmedBeforeItsLongRampIsOver(self):

@@ -722,8 +722,8 @@ TEST_F(BesideAShortTimeOut, theStopOfAnOfflineInverterGoesAndIsWarnedOfOnce)
   EXPECT_LE(bus_->count("02 05 00 00 00"), 8U);
   EXPECT_EQ(warnings(), 1U);
   EXPECT_THAT(bus_->logTexts(),
-              Contains(AllOf(HasSubstr("b: offline, but it may run"), HasSubstr("keeps the gateway for 1.5"),
-                             HasSubstr("time-out of a itself"), HasSubstr("800 ms"))));
+              Contains(AllOf(HasSubstr("b: offline, but it may run"), HasSubstr("blocks the gateway for 1.5"),
+                             HasSubstr("time-out of a, which is running"), HasSubstr("800 ms"))));
   bus_->world("b online");
   ASSERT_TRUE(bus_->runUntil(60.0, [&] { return online(B) && !bus_->status(B).stop_active; }));
   EXPECT_EQ(bus_->motor("b", "run_coil"), 0.0);
@@ -762,7 +762,7 @@ TEST_F(BehindAGateway, theBlockIsNamedWithTheSettingToShorten)
   {
     text += finding.text + "\n";
   }
-  EXPECT_THAT(text, HasSubstr("keeps the gateway for 1"));
+  EXPECT_THAT(text, HasSubstr("blocks the gateway for 1"));
   EXPECT_THAT(text, HasSubstr("response_timeout"));
   EXPECT_THAT(bus_->diagnostics(A), Not(HasSubstr("would have caught it"))) << "it waited behind another request";
 }

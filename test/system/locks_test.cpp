@@ -194,7 +194,7 @@ TEST_P(ToldLocks, untilTheDriveHasToldAfterARestartWhatItIs)
   bus_->run(8.0);
   bus_->world("pump power_cycle 0.02");
   commandFor(8.0);
-  EXPECT_THAT(refusals_, Contains(HasSubstr("has not told yet what it is")));
+  EXPECT_THAT(refusals_, Contains(HasSubstr("has not reported yet what it is")));
 }
 
 TEST_P(ToldLocks, afterAStopAndAfterASilence)

@@ -329,7 +329,7 @@ TEST(ConfigureMap, writesNothingWhileTheMotorTurns)
   bus.run(8.0);
   EXPECT_EQ(0.0, bus.motor("belt", "eeprom_writes"));
   EXPECT_EQ(0U, bus.count("01 06 16"));
-  EXPECT_THAT(bus.diagnostics(0), HasSubstr("it is written while the motor stands"));
+  EXPECT_THAT(bus.diagnostics(0), HasSubstr("it is written while the motor is at rest"));
 }
 
 TEST(ConfigureMap, isNotUsedBeforeSomebodyConfirmsTheRead)

@@ -155,7 +155,7 @@ TEST_F(Flood, tenThousandWrongGroupsEachWrongInItsOwnWay)
   ASSERT_EQ(before + 2, texts.size());
   EXPECT_EQ("grouped command refused: names '0'", texts[before]);
   EXPECT_EQ(0U, texts[before + 1].find("grouped command refused: names '")) << texts[before + 1];
-  EXPECT_NE(std::string::npos, texts[before + 1].find(" since the line before)")) << texts[before + 1];
+  EXPECT_NE(std::string::npos, texts[before + 1].find(" since the previous line)")) << texts[before + 1];
 }
 
 TEST_F(Flood, refusedVelocitiesLogOneLineInFiveSecondsAndRefusedCallsNone)
@@ -174,7 +174,8 @@ TEST_F(Flood, refusedVelocitiesLogOneLineInFiveSecondsAndRefusedCallsNone)
   const std::vector<std::string> texts = bus_.logTexts();
   ASSERT_EQ(before + 2, texts.size());
   EXPECT_NE(std::string::npos, texts[before].find("velocity 1000000000 is out of range")) << texts[before];
-  EXPECT_NE(std::string::npos, texts[before + 1].find("the last of 19999 since the line before")) << texts[before + 1];
+  EXPECT_NE(std::string::npos, texts[before + 1].find("the last of 19999 since the previous line"))
+      << texts[before + 1];
 }
 }  // namespace
 }  // namespace inverter_bus

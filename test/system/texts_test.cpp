@@ -53,7 +53,7 @@ TEST(Texts, aLockThatIsOverIsNotToldAsOneThatLasts)
   ASSERT_TRUE(bus.runUntil(10.0, [&] { return !bus.status(0).locked; }));
   EXPECT_EQ(bus::ERROR_LOCKED, bus.status(0).error_id) << "stays until the next accepted command";
   EXPECT_THAT(bus.status(0).error_text,
-              AllOf(HasSubstr("was refused"), HasSubstr("free now"), Not(HasSubstr("send 0"))));
+              AllOf(HasSubstr("was refused"), HasSubstr("unlocked now"), Not(HasSubstr("send 0"))));
   EXPECT_EQ(0U, bus.command(0, 10.0));
   bus.run(0.5);
   EXPECT_EQ(0U, bus.status(0).error_id);
@@ -69,7 +69,7 @@ TEST(Texts, aLockThatHoldsOneOfTwoPublishersOnlySaysSo)
   // "/user" goes on; "/panel" has returned to neutral.
   EXPECT_FALSE(bus.status(0).locked);
   EXPECT_EQ(bus::ERROR_LOCKED, bus.status(0).error_id);
-  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("locked for /user"), Not(HasSubstr("free now"))));
+  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("locked for /user"), Not(HasSubstr("unlocked now"))));
 }
 
 TEST(Texts, silenceIsShownBeforeALockThatCameEarlier)
@@ -84,7 +84,7 @@ TEST(Texts, silenceIsShownBeforeALockThatCameEarlier)
   bus.world("belt online");
   ASSERT_TRUE(bus.runUntil(5.0, [&] { return !bus.status(0).communication_error && !bus.status(0).locked; }));
   EXPECT_EQ(bus::ERROR_LOCKED, bus.status(0).error_id);
-  EXPECT_THAT(bus.status(0).error_text, HasSubstr("free now"));
+  EXPECT_THAT(bus.status(0).error_text, HasSubstr("unlocked now"));
 }
 
 TEST(Texts, aCommandToAnOfflineInverterIsRefusedWithTheReasonOfTheSilence)
@@ -125,7 +125,7 @@ TEST(Texts, aMemberOfARefusedGroupIsToldThatAnotherOneWasTheReason)
   bus.run(0.2);
   EXPECT_FALSE(bus.status(0).locked);
   EXPECT_EQ(bus::ERROR_LOCKED, bus.status(0).error_id);
-  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("an inverter of it was locked"), Not(HasSubstr("send 0"))));
+  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("one of its inverters was locked"), Not(HasSubstr("send 0"))));
   EXPECT_THAT(bus.status(1).error_text, HasSubstr("send 0"));
 }
 
@@ -140,10 +140,10 @@ TEST(Texts, aLiveMemberOfAGroupIsNotToldOfAnothersSilenceAsItsOwn)
   EXPECT_EQ(bus::ERROR_OFFLINE, bus.group({ { 0, 10.0 }, { 1, 10.0 } }));
   ASSERT_TRUE(bus.runUntil(0.4, [&] { return bus.status(0).error_id != 0; }));
   EXPECT_EQ(bus::ERROR_OFFLINE, bus.status(0).error_id);
-  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("the group was refused: an inverter of it was offline"),
+  EXPECT_THAT(bus.status(0).error_text, AllOf(HasSubstr("the group was refused: one of its inverters was offline"),
                                               HasSubstr("send 0"), Not(HasSubstr("answers again"))));
   bus.run(1.5);
-  EXPECT_EQ("the group was refused: an inverter of it was offline", bus.status(0).error_text) << "it is free";
+  EXPECT_EQ("the group was refused: one of its inverters was offline", bus.status(0).error_text) << "it is free";
   EXPECT_THAT(bus.status(1).error_text, HasSubstr("the inverter is offline: no reply in time"));
 }
 

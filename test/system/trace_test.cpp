@@ -39,7 +39,7 @@ TEST(Trace, aCommandAStopAndALockAreEvents)
 {
   VirtualBus bus(TWO_BELTS);
   bus.settleIn();
-  EXPECT_THAT(bus.eventTexts(), IsSupersetOf({ "port /dev/virtual is open", "belt: is not locked any more" }));
+  EXPECT_THAT(bus.eventTexts(), IsSupersetOf({ "port /dev/virtual is open", "belt: is no longer locked" }));
   ASSERT_EQ(0U, bus.command(0, 20.0, "/teleop"));
   bus.run(1.0);
   ASSERT_EQ(bus::ERROR_OUT_OF_RANGE, bus.command(1, 2000.0, "/teleop"));

@@ -27,14 +27,14 @@ void ConfirmedStops::check(TimePoint now, std::size_t index, TimePoint asked_at)
 {
   const InverterRecord& inverter = observed_.inverters[index];
   const std::string name = observed_.scene.title(index);
-  // What was commanded since is not this stop's business.
+  // What was commanded since does not concern this stop.
   if (plant_.runLatched(index) && inverter.order.accepted_at < asked_at)
   {
     fail(now, "a confirmed stop", name + " still has RUN on");
   }
   const Brand brand = observed_.scene.inverters[index].brand;
   const bool tells = brand == Brand::HITACHI || brand == Brand::TOSHIBA;
-  // A 3G3JE tells neither its RUN nor which request it answers: there another drive's late reply under its station
+  // A 3G3JE reports neither its RUN nor which request it answers: there another drive's late reply under its station
   // passes.
   const bool imitated = observed_.scene.compoway && inverter.link.imitated_at >= asked_at;
   if (inverter.stop.acknowledged < asked_at && run_read_[index] < asked_at && !imitated)

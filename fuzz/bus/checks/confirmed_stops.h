@@ -15,7 +15,7 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rule 3.3: a stop that is answered with success was acknowledged, RUN was read as off where the drive can tell, and
+/// Rule 3.3: a stop that is answered with success was acknowledged, RUN was read as off where the drive can report it, and
 /// it is off.
 class ConfirmedStops
 {

@@ -67,7 +67,7 @@ void CutWaits::dropAll()
 bool CutWaits::isLasting(const Exchange& exchange) const
 {
   const RequestFacts& facts = exchange.facts;
-  // A VF-S15 keeps what it is told in its EEPROM, but for command words; what the others keep is not known, but for the MX2.
+  // A VF-S15 keeps what it is sent in its EEPROM, except command words; of the others only the MX2 is known.
   const bool hitachi = observed_.scene.inverters[*facts.inverter].brand == Brand::HITACHI;
   return facts.stop || facts.reset || (!hitachi && isOtherWrite(facts));
 }
@@ -198,7 +198,7 @@ void CutWaits::ended(TimePoint now)
   const bool silent = exchange.heard_at == TimePoint();
   const Duration waited = silent ? now - exchange.request_end : now - exchange.heard_at;
   const Duration least = silent ? shortest(index) : seconds(SHORTEST_PAUSE_S - TOLERANCE_S);
-  // Between two tries of a stop that insists who does not answer is waited for as short as one likes.
+  // Between two tries of a stop that keeps trying, the wait for an unanswered exchange may be as short as the node likes.
   if (waited < least && !insisted_ && !insists())
   {
     fail(now, "a drive has its time before a stop cuts the wait",

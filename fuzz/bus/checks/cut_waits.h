@@ -21,7 +21,7 @@ class CutWaits
 public:
   explicit CutWaits(const Observed& observed);
 
-  /// Somebody has called the service, or all wait for something else to end.
+  /// The service was called, or all wait for something else to end.
   void asked(TimePoint now, std::size_t index);
   /// 0, or near it, was commanded.
   void zeroCame();
@@ -67,7 +67,7 @@ private:
   /// The exchange before, if it ended early.
   std::optional<Exchange> cut_;
   TimePoint heard_at_;
-  /// A stop insisted when the exchange in flight was chosen.
+  /// A stop kept trying when the exchange in flight was chosen.
   bool insisted_ = false;
   /// A 0 has come since, which a newer velocity may supersede before it can go.
   bool zero_came_ = false;

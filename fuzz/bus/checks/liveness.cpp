@@ -80,7 +80,7 @@ void Liveness::checkWentOffline(TimePoint now, std::size_t index) const
   const TimePoint refused_at = lanes_[index].refused_at;
   const Duration lately = seconds(observed_.scene.longestBlindness());
   const Exchange& exchange = observed_.exchange;
-  // Published before anybody has said that the exchange is over.
+  // Published before the exchange was reported as over.
   const bool just_now = exchange.in_flight && exchange.facts.inverter == index && !exchange.answered;
   const bool lost = just_now || (lost_at != TimePoint() && now - lost_at < lately);
   const bool refused = refused_at != TimePoint() && now - refused_at < lately;

@@ -15,7 +15,7 @@ namespace fuzz
 namespace checks
 {
 /// Contract, 8.15: alive means data. An inverter that has failed often and shown no complete status since is published
-/// as offline, whatever else it answers; and nobody is offline because others are.
+/// as offline, whatever else it answers; and none is offline because others are.
 class Liveness
 {
 public:

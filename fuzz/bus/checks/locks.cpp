@@ -170,7 +170,7 @@ void Locks::checkNeutral(TimePoint now, std::size_t index, const bus::Publisher&
   {
     fail(now, "a lock is forgotten",
          observed_.scene.title(index) + " takes a velocity of " + publisher.name +
-             ", who has not returned to neutral: silent for " + decimal(toSeconds(now - since)) + " s of " +
+             ", which has not returned to neutral: silent for " + decimal(toSeconds(now - since)) + " s of " +
              decimal(toSeconds(needed)) + " s");
   }
 }

@@ -25,7 +25,7 @@ class Locks
 public:
   Locks(const Observed& observed, TimePoint start);
 
-  /// Everybody must return to neutral; \p by_stop: once a stop is confirmed. \p stop_under_way: one had been sent
+  /// All publishers must return to neutral; \p by_stop: once a stop is confirmed. \p stop_under_way: one had been sent
   /// before.
   void lock(TimePoint now, std::size_t index, bool by_stop, bool stop_under_way);
   /// The drive did something by itself at \p since, and the lock is that old.

@@ -34,7 +34,7 @@ void Refusals::check(TimePoint now, const std::string& line) const
     if (line.compare(0, silence.size(), silence) == 0 && refused_at_[index] &&
         *refused_at_[index] < accepted_at + seconds(facts.command_timeout))
     {
-      fail(now, "refusals are told",
+      fail(now, "refusals are reported",
            observed_.scene.title(index) + ": the log says that no command came, but they were refused");
     }
   }

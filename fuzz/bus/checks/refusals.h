@@ -15,7 +15,7 @@ namespace fuzz
 {
 namespace checks
 {
-/// Refusals are told: the log must not say that nobody commands while somebody is refused.
+/// Refusals are reported: the log must not say that no command came while commands were refused.
 class Refusals
 {
 public:

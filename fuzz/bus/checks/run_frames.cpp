@@ -61,7 +61,7 @@ void RunFrames::checkRepeat(TimePoint now, std::size_t index) const
   if (exchange.facts.with_read && settled && !observed_.scene.inverters[index].fed_by_word)
   {
     fail(now, "17H only where there is something to write",
-         observed_.scene.title(index) + ": a settled command is told again");
+         observed_.scene.title(index) + ": a settled command is sent again");
   }
   const bool counts = !exchange.repeats_run && inverter.order.valid && !exchange.precedes_command;
   if (counts && inverter.words.run_copies > observed_.scene.retries)
@@ -74,7 +74,7 @@ void RunFrames::checkPowerCycle(TimePoint now, std::size_t index) const
 {
   const InverterRecord& inverter = observed_.inverters[index];
   const std::optional<TimePoint>& lost = power_lost_[index];
-  // An acknowledged RUN goes once more, or turns the motor round.
+  // An acknowledged RUN goes once more, or reverses the motor.
   if (!lost || inverter.words.run_answered)
   {
     return;
@@ -85,7 +85,7 @@ void RunFrames::checkPowerCycle(TimePoint now, std::size_t index) const
   if (!zeroed && !silent)
   {
     fail(now, "no RUN by a power cycle",
-         observed_.scene.title(index) + " had lost its RUN, and nobody has returned to neutral");
+         observed_.scene.title(index) + " had lost its RUN, and no publisher has returned to neutral");
   }
 }
 

@@ -53,7 +53,7 @@ Services::Callback Services::resetAsked(std::size_t index, double bound)
   const std::string what = "reset of " + observed_.scene.inverters[index].name;
   const std::string trips = plant_.value(index, "trips");
   return asked(what, bound, [this, index, what, trips](const bus::Answer& answer) {
-    // The 3G3JE can't tell whether its trip is gone. A trip that the node has not seen yet is nothing to reset.
+    // The 3G3JE can't report whether its trip is gone. A trip that the node has not seen yet is nothing to reset.
     const bool tells = observed_.scene.inverters[index].brand != Brand::JE;
     const bool sent = answer.message.compare(0, 7, "no trip") != 0;
     const bool new_trip = plant_.value(index, "trips") != trips;

@@ -31,7 +31,7 @@ public:
   /// empty) looks at that of a call that succeeded.
   Callback asked(const std::string& what, double bound, const Callback& judge);
   Callback resetAsked(std::size_t index, double bound);
-  /// Of the parameter that nobody writes.
+  /// Of the parameter that is never written.
   Callback readAsked(std::size_t index, double bound);
   /// Of the parameter that is written.
   Callback writeAsked(std::size_t index, double value, double bound);

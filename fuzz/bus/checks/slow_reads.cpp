@@ -70,7 +70,7 @@ void SlowReads::answered(TimePoint now, std::size_t index, const ReplyFacts& rep
 void SlowReads::ended(TimePoint now)
 {
   const Exchange& exchange = observed_.exchange;
-  // One that is not answered takes what nobody could know before.
+  // One that is not answered takes a time that was unknown before.
   if (!exchange.facts.inverter || !exchange.facts.reads_slow || !exchange.answered)
   {
     return;

@@ -29,7 +29,7 @@ public:
   void answered(TimePoint now, std::size_t index, const ReplyFacts& reply);
   /// Its exchange is over.
   void ended(TimePoint now);
-  /// What was read of this one counts no more: all is read anew.
+  /// What was read of this one no longer counts: all is read again.
   void wentOffline(std::size_t index);
 
 private:

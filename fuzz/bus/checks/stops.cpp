@@ -124,7 +124,7 @@ void Stops::ended()
 void Stops::measure(TimePoint now, TimePoint due, TimePoint sent_before)
 {
   ++checked_;
-  // Stops that were asked for together go one after the other: the first one tells the latency.
+  // Stops that were asked for together go one after the other: the first one shows the latency.
   worst_ = sent_before < due ? std::max(worst_, now - due) : worst_;
 }
 

@@ -22,7 +22,7 @@ class Stops
 public:
   explicit Stops(const Observed& observed);
 
-  /// Somebody has called the service.
+  /// The service was called.
   void requested(TimePoint now, std::size_t index);
   /// The command watchdog has run out at \p since.
   void watchdogExpired(TimePoint since, std::size_t index);

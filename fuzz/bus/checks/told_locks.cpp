@@ -33,14 +33,14 @@ void ToldLocks::check(TimePoint now, std::size_t index, const bus::Publisher& pu
   const bool old_message = publisher.latched && publisher.first_on_connection;
   if (result == bus::ERROR_LOCKED && !locked && !old_message && hasReturned(now, index, publisher.name))
   {
-    fail(now, "a lock is told",
+    fail(now, "a lock is reported",
          observed_.scene.title(index) + " refuses a velocity of " + publisher.name +
              " as locked, which has returned to neutral, while its status says that it is free");
   }
   const bool accepted = result == 0 && !observed_.isRepeat(index, publisher);
   if (accepted && locked && isAlone(index, publisher.name))
   {
-    fail(now, "a lock is told",
+    fail(now, "a lock is reported",
          observed_.scene.title(index) + " takes a velocity of " + publisher.name +
              ", which alone commands it, while its status says that it is locked");
   }

@@ -15,9 +15,9 @@ namespace fuzz
 {
 namespace checks
 {
-/// Rule 4.2: what the status says of the lock is what becomes of velocities. Told as free, nobody is refused as locked who has
-/// returned to neutral since it was told as locked; told as locked, nobody gets through who is the only one to command it.
-/// (Where there are several, a lock is told until all of them have returned, or one got through.)
+/// Rule 4.2: what the status says of the lock is what becomes of velocities. While it is reported as free, no publisher is
+/// refused as locked that has returned to neutral since it was reported as locked; while it is reported as locked, its only
+/// publisher does not get through. (Several: a lock is reported until all have returned, or one got through.)
 class ToldLocks
 {
 public:
@@ -33,7 +33,7 @@ private:
   struct Lane
   {
     bool locked = true;
-    TimePoint locked_at;  ///< when it was last told as locked
+    TimePoint locked_at;  ///< when it was last reported as locked
   };
   bool hasReturned(TimePoint now, std::size_t index, const std::string& publisher) const;
   bool isAlone(std::size_t index, const std::string& publisher) const;

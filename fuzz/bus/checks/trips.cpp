@@ -26,7 +26,7 @@ void Trips::glance(std::size_t index)
   statuses_[index] = isUnlisted(index) ? statuses_[index] : 0;
 }
 
-/// The drive says that it has tripped in a word that its profile does not know.
+/// The drive reports its trip in a word that its profile does not know.
 bool Trips::isUnlisted(std::size_t index) const
 {
   const InverterFacts& facts = observed_.scene.inverters[index];
@@ -64,7 +64,7 @@ void Trips::check(TimePoint now, const bus::InverterStatus& status)
   }
   if (status.monitor.faulted)
   {
-    fail(now, "a trip that no table lists is a trip", name + ": nobody knows whether it is tripped");
+    fail(now, "a trip that no table lists is a trip", name + ": it is unknown whether it is tripped");
   }
 }
 }  // namespace checks

@@ -33,14 +33,14 @@ void Turns::check(TimePoint now)
   const bool answered_before = answered_;
   answered_ = false;
   turn_of_ = isOfStop() ? std::optional<std::size_t>() : facts.inverter;
-  // The lowest class has every eighth exchange, whoever waits.
+  // The lowest class has every eighth exchange, whatever else waits.
   const bool again =
       turn_of_ && last == turn_of_ && !answered_before && !facts.reads_parameter && !observed_.shutting_down;
   for (std::size_t index = 0; again && index < held_.size(); ++index)
   {
     if (index != *turn_of_ && waits(now, index))
     {
-      fail(now, "nobody takes another one's turn",
+      fail(now, "no inverter takes another one's turn",
            observed_.scene.title(*turn_of_) + " gets two exchanges in a row while " + observed_.scene.title(index) +
                " waits: " + simulation::toHex(observed_.exchange.request));
     }
@@ -60,7 +60,7 @@ bool Turns::isOfStop() const
   return facts.stop || inverter.stop.active || (facts.loopback && !inverter.order.valid);
 }
 
-/// Somebody has asked for something of this inverter before the last exchange began, and nothing of it has been sent;
+/// Something was requested of this inverter before the last exchange began, and nothing of it has been sent;
 /// or its own time-out is near.
 bool Turns::waits(TimePoint now, std::size_t index) const
 {

@@ -17,7 +17,7 @@ namespace
 {
 constexpr std::size_t KEPT_ENDS = 512;
 constexpr std::size_t KEPT_READS = 64;
-constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may stand beside the refresh's
+constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may come beside the refresh's
 constexpr double KEPT_SAMPLES_S = 120.0;
 constexpr double OLDEST_SLOW_VALUE_S = 10.0;  // contract, 8.3: in any case, and so many periods
 constexpr double OLDEST_SLOW_VALUE_PERIODS = 2.5;
@@ -50,7 +50,7 @@ void Values::widen(std::size_t index)
 {
   Lane& lane = lanes_[index];
   const Truth seen = plant_.truth(index);
-  // It may have turned round meanwhile.
+  // It may have reversed meanwhile.
   lane.least = seen.direction * lane.sign < 0 ? 0.0 : std::min(lane.least, seen.hertz);
   lane.most = std::max(lane.most, seen.hertz);
   lane.sign = seen.direction;

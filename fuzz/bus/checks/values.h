@@ -39,7 +39,7 @@ public:
   std::uint64_t compared() const;
 
 private:
-  /// An exchange in which a drive told its frequency.
+  /// An exchange in which a drive reported its frequency.
   struct FrequencyRead
   {
     TimePoint end;
@@ -60,7 +60,7 @@ private:
     double least = 0.0;
     double most = 0.0;
     int sign = 0;
-    /// Empty: it stands.
+    /// Empty: it is at rest.
     std::optional<TimePoint> turning_since;
   };
 

@@ -17,7 +17,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// One serial bus: the thread that owns the port, and the door to it for everybody else.
+/// One serial bus: the thread that owns the port, and the way in for all other threads.
 ///
 /// Every public function may be called from any thread, returns at once (shutdown() excepted) and never throws.
 class Bus

@@ -19,7 +19,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// A configuration value as it came from the parameter server or from a YAML file, before anybody judged it.
+/// A configuration value as it came from the parameter server or from a YAML file, before it is judged.
 using config::Value;
 
 /// A scan list file as roslaunch would put it onto the parameter server (config/yaml.h).

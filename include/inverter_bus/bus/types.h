@@ -18,7 +18,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-// Error ids of the node itself (contract, section 2); 0x0205-0x0207 stand in wire/request.h.
+// Error ids of the node itself (contract, section 2); 0x0205-0x0207 are in wire/request.h.
 constexpr std::uint16_t ERROR_NONE = 0x0000;
 constexpr std::uint16_t ERROR_OUT_OF_RANGE = 0xA000;
 constexpr std::uint16_t ERROR_OFFLINE = 0xB001;
@@ -31,17 +31,17 @@ constexpr std::uint16_t ERROR_NOT_ARMED = 0xB006;
 /// One sentence for an error id that needs no drive to explain it.
 std::string errorText(std::uint16_t error_id, std::uint8_t gateway_code = 0);
 
-/// What 0xB005 says: what opens the lock, after a trip of the drive that was not reset yet as well.
+/// What 0xB005 says: what opens the lock, also after a trip of the drive that has not been reset yet.
 std::string lockedText(bool tripped);
 
 /// An error id as the documents write it: "0x0205".
 std::string errorIdText(std::uint16_t error_id);
 
-/// The drive has no such request: Modbus exceptions 01 to 03 (function, address, count) speak of the request itself, later
-/// ones of the moment (busy, locked, running). CompoWay/F has response codes for both.
+/// The drive has no such request: Modbus exceptions 01 to 03 (function, address, count) concern the request itself, later
+/// ones the moment (busy, locked, running). CompoWay/F has response codes for both.
 bool isLastingRefusal(const wire::Reply& reply);
 
-/// The drive has answered, be it that it will not.
+/// The drive has answered, even if with a refusal.
 bool isAnswered(const wire::Reply& reply);
 
 enum class StopMode : std::uint8_t
@@ -78,7 +78,7 @@ struct ServiceBounds
 /// Called once, in the bus thread or in the caller's; must not block.
 using AnswerCallback = std::function<void(const Answer&)>;
 
-/// Who sent a velocity and over which connection.
+/// The publisher of a velocity, and its connection.
 struct Publisher
 {
   /// ROS name of the publishing node: what counts for neutral and lock.
@@ -102,7 +102,7 @@ struct VelocityCommand
   bool grouped = false;
 };
 
-/// What InverterStatus.msg carries. An empty field of \ref monitor is NaN or "can't tell" there.
+/// What InverterStatus.msg carries. An empty field of \ref monitor is NaN or unknown there.
 struct InverterStatus
 {
   std::size_t index = 0;
@@ -117,7 +117,7 @@ struct InverterStatus
   std::optional<Duration> slow_age;
   bool run_command = false;
   bool communication_error = false;
-  /// Offline, but the communication works: the drive has answered lately, and refuses to tell its status for the moment.
+  /// Offline, but the communication works: the drive has answered lately, and refuses its status for the moment.
   bool refuses = false;
   bool move_velocity_active = false;
   bool reset_active = false;
@@ -156,7 +156,7 @@ struct Finding
 {
   Level level = Level::Ok;
   std::string text;
-  /// Lines of the log that tell the state of the same thing (the port, an inverter's link) have the same subject: a new
+  /// Lines of the log that report the state of the same thing (the port, an inverter's link) have the same subject: a new
   /// one replaces the one before it. Empty: a line of its own.
   std::string subject = {};
 };
@@ -197,7 +197,7 @@ struct TraceEvent
   std::array<char, 120> text{};  ///< ends with 0; what is longer is cut off
 };
 
-/// What the flight recorder has, on its way to a file; oldest first.
+/// The flight recorder's content, on its way to a file; oldest first.
 struct TraceDump
 {
   std::string reason;

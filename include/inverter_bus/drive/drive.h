@@ -19,8 +19,8 @@ namespace inverter_bus
 {
 namespace drive
 {
-/// What one drive reports, in its own sense (positive = forward) and in SI units. An empty field: it can't tell, or has
-/// not reported it yet.
+/// What one drive reports, in its own sense (positive = forward) and in SI units. An empty field: it can't report it, or has
+/// not done so yet.
 struct Monitor
 {
   std::optional<bool> run_seen;  ///< the RUN command that the drive holds from the bus
@@ -107,11 +107,11 @@ public:
   const std::vector<ReadBlock>& slowBlocks() const;
   /// Reads that are only made while the drive is tripped (fault code).
   const std::vector<ReadBlock>& faultBlocks() const;
-  /// The shortest read that shows run_seen, for the read-back of a stop; empty: the drive can't tell.
+  /// The shortest read that shows run_seen, for the read-back of a stop; empty: the drive can't report it.
   const std::optional<ReadBlock>& runBlock() const;
 
   wire::Request read(std::uint8_t station, const ReadBlock& block) const;
-  /// Puts what \p reply (function code first) says into \p monitor. The reply must have been checked against the request.
+  /// Puts the content of \p reply (function code first) into \p monitor. The reply must have been checked against the request.
   /// Quantities in percent of a rating that \p ratings doesn't know stay empty.
   void decode(const ReadBlock& block, const wire::Bytes& reply, Monitor& monitor,
               const Ratings& ratings = Ratings()) const;
@@ -120,7 +120,7 @@ public:
   /// The same read with another number of words, so that a late reply to one can't be taken for the answer to the other;
   /// empty: there is none. Values beyond a shorter one stay empty.
   std::optional<ReadBlock> variantOf(const ReadBlock& block) const;
-  /// The drive can tell whether a RUN of the bus is on.
+  /// The drive can report whether a RUN of the bus is on.
   bool tellsRun() const;
 
   // --- block read and write ---------------------------------------------------------------------------------------

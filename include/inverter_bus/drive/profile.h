@@ -91,9 +91,9 @@ struct Item
   std::optional<unsigned> bit;
   /// Bits of the register that count (others are undefined on this drive).
   std::uint32_t mask = 0xFFFFFFFF;
-  /// A flag that is true whatever the masked value is, unless it is 0 (an error word).
+  /// A flag that is true for every masked value but 0 (an error word).
   bool nonzero = false;
-  /// Raw value to meaning, where the drive counts otherwise than we do (direction: 2 means reverse = -1).
+  /// Raw value to meaning, where the drive counts differently from the driver (direction: 2 means reverse = -1).
   std::map<std::uint32_t, int> values;
   /// Empty, or the name under which this item is unconfirmed.
   std::string unconfirmed;
@@ -239,8 +239,8 @@ struct RegisterMap
   std::vector<MirroredCoils> words;
   /// What each parameter of the map must be, in the order of the profile. The last one switches the map on.
   std::vector<std::pair<std::string, std::uint32_t>> table;
-  /// Empty, or the name under which it is unconfirmed that the drive answers such a read. It shows only where somebody wants
-  /// the map.
+  /// Empty, or the name under which it is unconfirmed that the drive answers such a read. It shows only where the map
+  /// is asked for.
   std::string unconfirmed;
 };
 
@@ -342,7 +342,7 @@ struct Profile
 
   /// What distinguishes this kind of drive from others.
   std::vector<Expectation> identity;
-  /// Who may command the drive.
+  /// What may command the drive.
   std::vector<Expectation> command_source;
   /// Settings by which a drive restarts by itself.
   std::vector<Expectation> self_restart;
@@ -385,10 +385,10 @@ struct ProfileChanges
 
 /// What `skip` may leave out: fields of the status, `store_busy`, and `trip_memory` (the quantities beside the trip codes).
 const std::set<std::string>& skippableFields();
-/// Fields of the status that can't be left out: what decides over safety (contract, 8.3), and the drive's own word.
+/// Fields of the status that can't be left out: what decides safety (contract, 8.3), and the drive's own word.
 const std::set<std::string>& protectedFields();
 
-/// Reads the profile \p name_or_path: an absolute path, or a name that stands for `<directory>/<name>.yaml`.
+/// Reads the profile \p name_or_path: an absolute path, or a name that means `<directory>/<name>.yaml`.
 /// \throws ConfigurationError "file:line: key ...: what is wrong, what is allowed"
 Profile loadProfile(const std::string& name_or_path, const std::string& directory,
                     const ProfileChanges& changes = ProfileChanges());

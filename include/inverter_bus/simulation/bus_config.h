@@ -52,8 +52,8 @@ struct SerialOptions
 };
 
 /// Reads the driver's own parameters: `protocol`, `baud_rate`, `parity`, `data_bits`, `stop_bits`, `defaults` and
-/// `scan_list` (a list, or a bit mask as integer or string: 0x.. or #..) count here, other keys of the driver are passed
-/// over: the programs have them judged by the driver's own rules before. A CompoWay/F bus has 7 data bits, even parity and
+/// `scan_list` (a list, or a bit mask as integer or string: 0x.. or #..) count here, other keys of the driver are
+/// ignored: the programs have them judged by the driver's own rules first. A CompoWay/F bus has 7 data bits, even parity and
 /// 2 stop bits unless the file says otherwise. An optional top-level map `simulation` says more about the simulated drives,
 /// by name:
 ///

@@ -27,22 +27,22 @@ namespace simulation
 class BusRunner
 {
 public:
-  /// Opens the terminal under the name \p link. \p bus must outlive the runner, is used by nobody else while run() runs, and
+  /// Opens the terminal under the name \p link. \p bus must outlive the runner, is not used elsewhere while run() runs, and
   /// should start now. \throws std::runtime_error when terminal or link can't be made
   BusRunner(SimulatedBus& bus, const std::string& link);
   ~BusRunner();
   BusRunner(const BusRunner&) = delete;
   BusRunner& operator=(const BusRunner&) = delete;
 
-  /// Also reads commands, one a line, from this descriptor; its end ends nothing. \p answer gets the answer to each, in the
-  /// thread of run(). Call it before run().
+  /// Also reads commands, one a line, from this descriptor; its end does not end the program. \p answer gets the answer
+  /// to each, in the thread of run(). Call it before run().
   void readCommands(int descriptor, std::function<void(const std::string&)> answer);
 
   /// The parity that the client is taken to use, whatever its terminal shows (see terminal_settings.h). Call it before run().
   void assumeParity(Parity parity);
 
-  /// The last \p lead seconds of each wait are spent looking at the clock, which is less late than the kernel's timers and
-  /// costs so much of a core; 0: never. Call it before run().
+  /// The last \p lead seconds of each wait are spent polling the clock, which is less late than the kernel's timers and
+  /// costs that much of a core; 0: never. Call it before run().
   void spin(double lead);
 
   /// Returns after stop(). \p realtime_priority 1 to 99: SCHED_FIFO for the calling thread, where that is permitted; 0: as

@@ -13,13 +13,13 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// A raw pseudo-terminal with a link to it, which stands for the serial port of an adapter. The far side is kept open
+/// A raw pseudo-terminal with a link to it, in place of the serial port of an adapter. The far side is kept open
 /// here too, so that a client that closes doesn't hang it up. Not for several threads at once.
 class PseudoTerminal
 {
 public:
   /// Opens the terminal under the name \p link; an older link of that name is replaced. \p settings are what it is set to
-  /// until a client sets it. \throws std::runtime_error when there is no terminal to be had, or the link can't be made; the
+  /// until a client sets it. \throws std::runtime_error when no terminal is available, or the link can't be made; the
   /// text says why
   explicit PseudoTerminal(const std::string& link, const LineSettings& settings = LineSettings());
   ~PseudoTerminal();
@@ -38,7 +38,7 @@ public:
 
   /// What clients have written; empty where nothing waits. Never blocks.
   Bytes read();
-  /// Never blocks: what nobody reads and doesn't fit any more is lost, as on a wire.
+  /// Never blocks: unread bytes beyond what fits are lost, as on a wire.
   void write(const Bytes& bytes);
 
 private:

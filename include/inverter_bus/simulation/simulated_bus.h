@@ -44,7 +44,7 @@ public:
   std::optional<TimePoint> nextEvent() const;
   void advance(TimePoint now);
   std::vector<Delivery> takeOutput(TimePoint now);
-  /// False while the adapter is unplugged (`bus unplug`): whoever owns a port closes it then.
+  /// False while the adapter is unplugged (`bus unplug`): the owner of a port closes it then.
   bool pluggedIn() const;
 
   /// Runs one command (grammar: bus_commands.h, and the command `help`). The answer is one line, "ok ..." or

@@ -84,7 +84,7 @@ public:
   bool powered() const;
   /// How the master talks from now on; until the first call exactly as the drive understands it.
   void setLine(const LineSettings& line);
-  /// False while the drive hears garbage: its serial settings are others than the master's.
+  /// False while the drive hears garbage: its serial settings differ from the master's.
   bool understandsLine() const;
   /// One more of what only the line can see: lost_gap, early or lost_busy.
   void count(std::uint64_t ExchangeCounters::*counter);
@@ -94,7 +94,7 @@ public:
   // Faults of the connection.
   void inject(const Fault& fault);
   void clearFaults();
-  /// Cuts the drive off the bus (it runs on) \p until then; nothing: until setOnline().
+  /// Cuts the drive off from the bus (it runs on) \p until then; nothing: until setOnline().
   void setOffline(std::optional<TimePoint> until);
   void setOnline();
   /// Switches the mains off \p until it starts up again, without start-up time; nothing: until powerOn().
@@ -104,12 +104,12 @@ public:
   /// Switches the mains on; the drive answers after its start-up time.
   void powerOn(TimePoint now);
 
-  // Operating the drive by hand. What is refused says why and changes nothing.
+  // Operating the drive by hand. A refusal says why and changes nothing.
   /// Trips the drive. \p code as its manual numbers it.
   virtual Refusal trip(int code, TimePoint now) = 0;
   /// What the drive's state word reads while this trip lasts, instead of what its manual says; until it is reset.
   virtual Refusal showTripAs(unsigned state);
-  /// Somebody takes the drive over at its panel and runs the motor at \p hertz: sign = direction, 0 = stopped, at most the
+  /// The drive is taken over at its panel, which runs the motor at \p hertz: sign = direction, 0 = stopped, at most the
   /// maximum frequency.
   virtual Refusal takeOverAtPanel(double hertz, TimePoint now) = 0;
   virtual Refusal releasePanel(TimePoint now) = 0;
@@ -149,7 +149,7 @@ protected:
   // What a brand provides.
   /// The next time at which something happens by itself, if before the given one; else the given one.
   virtual TimePoint nextChange(TimePoint limit) const = 0;
-  /// The time goes on by this much, during which nothing happens but motion.
+  /// Time advances by this much, during which only motion happens.
   virtual void move(double seconds) = 0;
   /// Does what is due at clock().
   virtual void change() = 0;

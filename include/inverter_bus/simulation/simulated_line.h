@@ -60,7 +60,7 @@ struct FrameRecord
   };
   TimePoint time;  ///< start of its first byte
   Source source = Source::Master;
-  std::string drive;    ///< who sent it, if a drive
+  std::string drive;    ///< the drive that sent it, if any
   std::string station;  ///< as the frame says: "1"; CompoWay/F: "01", "XX"; empty: it doesn't say
   Bytes bytes;          ///< as on the wire: damage included
   std::string remark;   ///< "lost: gap", "damaged: collision", ...; empty: all well
@@ -90,9 +90,9 @@ struct LineCounters
 /// **The gap in real time.** A process is woken late, never early. What the master writes is stamped when it is read,
 /// so its stamp is late or right. What the master reads it can have seen no earlier than it was handed over; that, not
 /// the ideal end of the byte on the wire, is what takeOutput() takes as the end of the line's activity: a master that
-/// reads the last byte late and then waits its time is always in time, one that doesn't wait is found out
+/// reads the last byte late and then waits its time is always in time, one that doesn't wait is caught
 /// however late this process was. `gap_tolerance` covers the granularity of the master's own timer and a late stamp on
-/// a frame that nobody answers (after it the master waits far longer anyway).
+/// a frame that is not answered (after it the master waits far longer anyway).
 ///
 /// Not for several threads at once.
 class SimulatedLine
@@ -121,11 +121,11 @@ public:
   void setConnected(bool connected, TimePoint now);
   /// The adapter sends everything back to the master that the master sends (no echo suppression).
   void setEcho(bool on);
-  /// The line between master and drives is cut: nobody hears anything.
+  /// The line between master and drives is cut: neither side hears anything.
   void setSilent(bool on);
   /// A second master sends a frame, as it is. \p wait: as soon as the line is silent; else at once.
   void sendForeign(const Bytes& frame, bool wait, TimePoint now);
-  /// Bytes of nobody.
+  /// Bytes from no sender (noise).
   void sendNoise(std::size_t count, TimePoint now);
 
   const LineCounters& counters() const;

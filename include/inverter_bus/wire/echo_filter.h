@@ -11,17 +11,17 @@ namespace wire
 {
 /// Finds out whether the adapter returns what it sends (local echo) and takes the echo out of the received bytes.
 ///
-/// A reply can equal its request (05, 06 and 08 hex), so that such a request cannot tell the echo from the reply: the
-/// finding comes from requests that cannot be mistaken. **The first request after opening must therefore be a read**;
+/// A reply can equal its request (05, 06 and 08 hex), so that with such a request the echo cannot be told from the reply: the
+/// finding comes from unmistakable requests. **The first request after opening must therefore be a read**;
 /// it need not be answered, for the echo comes all the same.
 class EchoFilter
 {
 public:
-  /// The port was opened anew: another adapter may be behind it.
+  /// The port was reopened: another adapter may be behind it.
   void forget();
   /// \p frame was sent. \p reply_may_equal: its reply may be the very same bytes.
   void expect(const Bytes& frame, bool reply_may_equal);
-  /// Takes the expected echo out of \p buffer, and what stands before it into \p damaged. True if it was there.
+  /// Takes the expected echo out of \p buffer, and moves what precedes it to \p damaged. True if it was there.
   bool strip(Bytes& buffer, Bytes& damaged);
   /// True while \p buffer may be the beginning of the expected echo and must not be looked at otherwise.
   bool holds(const Bytes& buffer) const;

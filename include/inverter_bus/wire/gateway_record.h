@@ -71,7 +71,7 @@ public:
     std::string shape;
     TimePoint sent_at;
     TimePoint request_end;
-    /// Nobody must answer it, but a gateway may: a broadcast (to unit 0), or one that the drive executes in silence.
+    /// No drive may answer it, but a gateway may: a broadcast (to unit 0), or one that the drive executes in silence.
     bool silent = false;
     ExceptionCodes own_exceptions = everyExceptionOfADrive();
   };
@@ -100,7 +100,7 @@ public:
   bool takes(const Answer& answer);
   /// The request on its way is not waited for any longer.
   void givenUp(TimePoint now);
-  /// The owed request that \p answer, which nobody waits for, belongs to; it is owed no longer. Nothing if there is none;
+  /// The owed request that \p answer, which is not waited for, belongs to; it is owed no longer. Nothing if there is none;
   /// without a ticket if several could have got it.
   std::optional<Asked> takeLate(const Answer& answer);
 
@@ -146,11 +146,11 @@ private:
   bool trusted_ = false;
   /// On this connection numbers or units were visibly wrong.
   bool quirky_ = false;
-  /// A reply came that two requests could have got.
+  /// A reply came that could belong to two requests.
   bool mixed_ = false;
   /// NumberHabit, of all answers on this connection whose request was certain.
   unsigned habits_ = 0;
-  /// NumberHabit and UnitHabit that should not be, since the start.
+  /// NumberHabit and UnitHabit that should not occur, since the start.
   unsigned wrong_numbers_ = 0;
   unsigned wrong_units_ = 0;
 };

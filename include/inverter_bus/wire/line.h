@@ -25,7 +25,7 @@ class LineTiming
 {
 public:
   /// A serial port of this machine. The longest pause inside a reply is 25 ms (16 ms of a USB adapter's latency timer
-  /// and some reserve), at low rates 18 characters: a 16550A whose FIFO reports up to 14 bytes at a time tells of the rest
+  /// and some reserve), at low rates 18 characters: a 16550A whose FIFO reports up to 14 bytes at a time reports the rest
   /// after a silence of 4.
   /// \param baud_rate bits per second, > 0
   /// \param bits_per_character start, data, parity and stop bits: 9 to 12
@@ -44,7 +44,7 @@ public:
   Duration patience(double gap_characters) const;
 
   /// The longest pause inside a reply that a drive and a UART make: 5 ms, or the 18 characters after which the FIFO of a
-  /// 16550A tells of the next bytes if they are longer. Adapters and networks add theirs.
+  /// 16550A reports the next bytes if they are longer. Adapters and networks add theirs.
   Duration briefPause() const;
 
 private:
@@ -77,7 +77,7 @@ struct FrameEvent
     Damaged,
     /// The answer to an earlier request that had timed out.
     Late,
-    /// A valid frame that nobody here asked for.
+    /// A valid frame that this node did not ask for.
     Foreign
   };
   Kind kind;
@@ -94,7 +94,7 @@ struct LineCounters
   std::uint64_t corrupt_replies = 0;  ///< damaged in either direction
   std::uint64_t exceptions = 0;
   std::uint64_t late_replies = 0;
-  std::uint64_t foreign_frames = 0;  ///< frames that nobody here asked for: a second master
+  std::uint64_t foreign_frames = 0;  ///< frames that this node did not ask for: a second master
   std::uint64_t echoes = 0;          ///< exchanges whose local echo was removed
 };
 
@@ -155,7 +155,7 @@ public:
   bool mayAsk(const Request& request) const;
   /// Earliest time from which mayAsk() is true without further traffic.
   TimePoint mayAskAt(const Request& request) const;
-  /// The same for somebody who decides at \p now, whatever the clock shows meanwhile.
+  /// The same for a decision made at \p now, whatever the clock shows meanwhile.
   TimePoint mayAskAt(const Request& request, TimePoint now) const;
 
   /// Sends, after the silence that Request::quiet_before asks for, and waits for the answer; closes the port if it is
@@ -191,17 +191,17 @@ public:
   /// in what is sent from then on, and undoubled in what is received.
   bool telnetFound() const;
   /// Text that the other end has sent since it was opened or since its last valid reply, fit for a message; empty if
-  /// what came is no text. A server that closes says so why ("Port already in use"); one that goes on has only greeted.
+  /// what came is no text. A server that closes says why that way ("Port already in use"); one that goes on has only greeted.
   /// Kept until the port is opened again.
   std::string peerWords() const;
-  /// Modbus TCP: requests of this connection that nobody has answered yet, oldest first. Empty in other protocols.
+  /// Modbus TCP: requests of this connection that have not been answered yet, oldest first. Empty in other protocols.
   std::vector<Outstanding> outstanding() const;
   /// Modbus TCP: the gateway has shown on this connection that it keeps transaction numbers and units.
   bool gatewayTrusted() const;
   /// Modbus TCP: how the gateway visibly changes transaction numbers or units ("its replies carry transaction number 0 ..."),
-  /// as seen since the start; empty as long as it does not. Name it once.
+  /// as seen since the start; empty as long as it does not. Report it once.
   std::string gatewayQuirk() const;
-  /// Modbus TCP: why the connection must be opened anew before the next request (by abandon()), since replies to come
+  /// Modbus TCP: why the connection must be reopened before the next request (by abandon()), since replies to come
   /// could not be told apart; empty if it need not.
   std::string mustReopen() const;
   /// Time after which a gateway has given up a request that it left unanswered (`gateway_timeout`, default 3 s).
@@ -271,7 +271,7 @@ private:
   bool proven_ = false;
   /// Nothing but bytes directly behind it has come since the last valid reply.
   bool behind_reply_ = false;
-  /// The last request if it was one that the drive may answer or not.
+  /// The last request, if it is one that the drive may or may not answer.
   std::optional<Request> silent_request_;
 };
 }  // namespace wire

@@ -16,7 +16,7 @@ namespace wire
 class PeerWords
 {
 public:
-  /// A new connection, or a valid reply: what was said before explains nothing that comes.
+  /// A new connection, or a valid reply: what was said before explains nothing that follows.
   void forget();
   void add(const Bytes& bytes);
   /// One line, fit for a message (see util::printable()); empty if it is not a text.

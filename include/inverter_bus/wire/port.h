@@ -33,7 +33,7 @@ enum class OpenResult
 enum class Loss
 {
   None,
-  /// Unplugged, I/O error, a network or host that does not answer any more.
+  /// Unplugged, I/O error, a network or host that no longer answers.
   Gone,
   /// The other side has ended the connection in good order or refused to go on (end of stream, ECONNRESET, EPIPE): it is
   /// there, and a new connection may do.
@@ -54,7 +54,7 @@ enum class ReceiveResult
 struct AdapterLatency
 {
   Duration latency{ 0 };
-  /// Where root may write another number of milliseconds.
+  /// The file to which root may write another number of milliseconds.
   std::string file;
 };
 
@@ -70,7 +70,7 @@ public:
   virtual OpenResult open(std::string& error) = 0;
   /// Closes; closing a closed port does nothing.
   virtual void close() = 0;
-  /// Closes at once and for good: nothing that was sent goes on, the other side is told so (TCP: RST).
+  /// Closes at once and for good: nothing that was sent goes on, and the other side is notified (TCP: RST).
   virtual void abandon()
   {
     close();
@@ -92,7 +92,7 @@ public:
   {
     return Loss::Gone;
   }
-  /// As far as the driver of an adapter tells; may change at any time. Reads sysfs.
+  /// As far as the driver of an adapter reports it; may change at any time. Reads sysfs.
   virtual std::optional<AdapterLatency> adapterLatency() const
   {
     return std::nullopt;

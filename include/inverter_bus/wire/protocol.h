@@ -74,7 +74,7 @@ public:
 
   /// Replies of equal shape cannot be told apart: station, function and whatever of the request a reply repeats. Two
   /// requests with equal shapes must not follow each other after a time-out (rule 3.9). Behind a gateway
-  /// without station and transaction number: whether they tell, only the gateway shows (GatewayRecord).
+  /// without station and transaction number: whether these distinguish replies, only the gateway shows (GatewayRecord).
   virtual std::string shape(const Request& request) const = 0;
   /// The shape that the valid frame \p reply from the wire would answer to; empty if none. An exception repeats nothing
   /// but station and function: its shape is the beginning that the shapes of all requests which it could answer have in

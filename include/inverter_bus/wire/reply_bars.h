@@ -38,9 +38,9 @@ public:
   TimePoint barredUntil(const std::string& shape) const;
   /// True if a reply of \p shape (a beginning of shapes for an exception) may be the answer to a lost request.
   bool mayBeLate(const std::string& shape, TimePoint now) const;
-  /// True while the bar of any lost request stands: its reply may come yet.
+  /// True while the bar of any lost request is up: its reply may still come.
   bool owes(TimePoint now) const;
-  /// A reply of \p shape came that nobody waits for. Lifts the bar of the request that it belongs to; empty if no lost
+  /// A reply of \p shape came that is not waited for. Lifts the bar of the request that it belongs to; empty if no lost
   /// request could have got it.
   std::optional<Late> take(const std::string& shape, TimePoint now);
   /// Lifts all bars of \p station set for requests before \p time: it has answered something newer since.

@@ -51,7 +51,7 @@ enum class Outcome
 {
   /// A reply that belongs to the request. The drive is alive.
   Ok,
-  /// The drive answered that it will not (Modbus exception, CompoWay/F response code). It is alive: never counts
+  /// The drive answered with a refusal (Modbus exception, CompoWay/F response code). It is alive: never counts
   /// towards offline and is never repeated.
   Exception,
   /// No byte in time, or a gateway says that the drive has not answered (Reply::gateway_code). Repeated up to `retries`,
@@ -84,13 +84,13 @@ struct Reply
   /// Running number of the line's requests, from 1; never used twice. A late reply bears that of its request. 0: nothing
   /// was sent.
   std::uint64_t ticket = 0;
-  /// Timeout: the exception code by which a gateway said so, which has then done with the request (nothing of it is
+  /// Timeout: the exception code by which a gateway said so, which is then finished with the request (nothing of it is
   /// outstanding); 0: no answer.
   std::uint8_t gateway_code = 0;
   /// Timeout: the other end has closed the connection in place of the answer (contract, 8.9), and a new one is opened at
   /// once.
   bool connection_closed = false;
-  /// Timeout or Damaged: a stop has ended the wait (contract, 8.4), so that it says nothing of the drive.
+  /// Timeout or Damaged: a stop has ended the wait (contract, 8.4), so it says nothing about the drive.
   bool cut = false;
 };
 

@@ -27,8 +27,8 @@ struct TcpAddress
   std::uint16_t port = 0;
 };
 
-/// "host:port", "host", "[::1]:502" or "[::1]". \p default_port stands for one that is not given; 0: it must be given.
-/// Empty if \p text is not an address, and \p error then says in half a sentence why.
+/// "host:port", "host", "[::1]:502" or "[::1]". \p default_port applies where none is given; 0: it must be given.
+/// Empty if \p text is not an address, and \p error then says why, in half a sentence.
 std::optional<TcpAddress> parseTcpAddress(const std::string& text, std::uint16_t default_port, std::string& error);
 
 /// The addresses of \p host in numbers, best first; none, and \p error says why, if it has none. May block for long: it

@@ -14,13 +14,13 @@ namespace wire
 {
 /// Notices that the server at the other end speaks telnet (RFC 854), which eats FFH and the byte behind it, and then
 /// writes and reads as telnet does. Two option negotiations (FF FB to FE, option) before the first valid reply of a
-/// connection tell (contract, 8.11): no frame of a drive begins with FFH.
+/// connection reveal it (contract, 8.11): no frame of a drive begins with FFH.
 class TelnetFilter
 {
 public:
   /// A new connection.
   void forget();
-  /// A valid reply came as it was: from now on nothing is telnet that has not been found before.
+  /// A valid reply came as it was: from now on nothing counts as telnet unless it was found before.
   void proven();
   bool found() const;
 

@@ -53,7 +53,7 @@ void Absences::noteLost(TimePoint now, Inverter& inverter, std::uint16_t error_i
   failTrial(now, inverter, error_id);
 }
 
-/// It answers, but not what counts.
+/// It answers, but not with what counts.
 void Absences::noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
   if (inverter.refusedStatus(error_id))
@@ -64,7 +64,7 @@ void Absences::noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t erro
   failTrial(now, inverter, error_id);
 }
 
-/// An offline inverter that has answered has shown no status after all: what that has cost is paid by the probes.
+/// An offline inverter that has answered has shown no status after all: the probes pay for what that has cost.
 void Absences::failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
   if (inverter.link.onTrial() && !bus_.shutting_down)
@@ -73,7 +73,7 @@ void Absences::failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_
   }
 }
 
-/// A lost write says little: a read is to show soon whether the drive is away, or loses writes only.
+/// A lost write says little: a read must soon show whether the drive is away, or only loses writes.
 void Absences::noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id)
 {
   if (!bus_.behind_another && inverter.failed(now, error_id, true))

@@ -9,7 +9,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What follows when an inverter can't be reached, or loses what it is told (contract, 8.1 and 8.15): it goes offline, its
+/// What follows when an inverter can't be reached, or loses what it is sent (contract, 8.1 and 8.15): it goes offline, its
 /// services fail, and what may run is stopped.
 class Absences
 {
@@ -22,7 +22,7 @@ public:
   void noteRefusal(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void noteLostWrite(TimePoint now, Inverter& inverter, std::uint16_t error_id);
   void writesLost(TimePoint now, Inverter& inverter);
-  /// The port is gone, or nobody answers over it.
+  /// The port is gone, or no drive answers over it.
   void loseEverybody(TimePoint now, std::uint16_t error_id);
   /// True: an inverter has just gone offline, because its status has not come for too long.
   bool watchStatuses(TimePoint now);

@@ -17,8 +17,8 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// All that a bus does, in the order in which one knows another: what stands below may ask what stands above, never the other
-/// way round.
+/// All that a bus does, in the order in which one knows another: what is listed below may ask what is listed above, never
+/// the other way round.
 struct Activities
 {
   explicit Activities(BusState& bus);

@@ -76,7 +76,7 @@ ServiceBounds serviceBounds(const BusState& bus)
   bounds.write_parameter = std::max(bounds.write_parameter, 20.0 * exchange);
   if (bus.gateway.active())
   {
-    // A lost request of somebody else may keep the gateway before the first frame, and one of its own behind it.
+    // A lost request of another inverter may block the gateway before the first frame, and one of its own behind it.
     for (double* bound :
          { &bounds.stop, &bounds.reset, &bounds.read_faults, &bounds.read_parameter, &bounds.write_parameter })
     {

@@ -27,7 +27,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the activities of one bus share. Whoever changes what is the business of one activity only, does it there.
+/// What the activities of one bus share. State that concerns only one activity belongs in that activity.
 struct BusState
 {
   /// \p line is asked for its timing, and not kept.
@@ -54,7 +54,7 @@ struct BusState
   TimePoint opened_at;
   /// The exchange that has just ended was not answered, and says nothing: an older request was unanswered.
   bool behind_another = false;
-  /// A broadcast went while the gateway was kept: no other one meanwhile (contract, 8.8).
+  /// A broadcast went while the gateway was blocked: no other one meanwhile (contract, 8.8).
   bool broadcast_waits = false;
 
   CommandId next_command = 1;
@@ -65,12 +65,12 @@ struct BusState
   std::uint16_t last_error = 0;
 
   bool shutting_down = false;
-  /// Nobody asks for the next exchange any more.
+  /// No exchange is asked for any more.
   bool ended = false;
 };
 
-/// A drive with a port of its own that has not told its status yet: to a gateway the same number means something else, so that
-/// nothing but reads goes there (contract, 8.8).
+/// A drive with a port of its own that has not reported its status yet: to a gateway the same number means something
+/// else, so nothing but reads goes there (contract, 8.8).
 bool untested(const Inverter& inverter);
 
 /// In the drive's own words where it has answered.

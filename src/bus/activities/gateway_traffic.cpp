@@ -64,8 +64,8 @@ void GatewayTraffic::note(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// Whoever has kept the gateway waits until everybody else was refreshed once, counted from when it is free again: else only
-/// one exchange would go between two blocks.
+/// An inverter that has blocked the gateway waits until every other one was refreshed once, counted from when it is free
+/// again: otherwise only one exchange would go between two blocks.
 void GatewayTraffic::othersFirst(TimePoint free_at, Inverter& inverter)
 {
   // Not where its own time-out would pass meanwhile.
@@ -76,7 +76,7 @@ void GatewayTraffic::othersFirst(TimePoint free_at, Inverter& inverter)
   }
 }
 
-/// Once: what it does differs from what its users expect.
+/// Once: its behaviour differs from what users expect.
 void GatewayTraffic::tell()
 {
   if (bus_.gateway.silentByNature() && !told_of_gateway_)
@@ -85,7 +85,7 @@ void GatewayTraffic::tell()
     bus_.outbox.log(Level::Warn, "port " + bus_.configuration.bus.port +
                                      ": requests to a silent station are left unanswered: from now on " +
                                      util::durationText(bus_.gateway.wait()) +
-                                     " is waited for instead of gateway_timeout");
+                                     " is the wait, instead of gateway_timeout");
   }
 }
 
@@ -109,7 +109,7 @@ Gate GatewayTraffic::gate(TimePoint now)
   return gate;
 }
 
-/// The running inverter with the shortest time-out of its own, if a silent station keeps the gateway for longer than that.
+/// The running inverter with the shortest time-out of its own, if a silent station blocks the gateway for longer than that.
 const Inverter* GatewayTraffic::endangered() const
 {
   const Inverter* first = nullptr;
@@ -126,7 +126,7 @@ const Inverter* GatewayTraffic::endangered() const
   return first;
 }
 
-/// Contract, 8.8: a stop of an inverter that may run goes in spite of what that does to its neighbours, with one WARN.
+/// Contract, 8.8: a stop of an inverter that may run goes in spite of its effect on its neighbours, with one WARN.
 void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
 {
   const Inverter* const neighbour = inverter.link.silent() && !bus_.shutting_down ? endangered() : nullptr;
@@ -134,10 +134,10 @@ void GatewayTraffic::tellOfCostlyStop(Inverter& inverter)
   {
     const std::string& name = neighbour->config.name;
     bus_.outbox.log(Level::Warn,
-                    inverter.config.name + ": offline, but it may run: each try of its stop keeps the gateway for " +
+                    inverter.config.name + ": offline, but it may run: each try of its stop blocks the gateway for " +
                         util::durationText(bus_.gateway.block()) + ", longer than the time-out of " + name +
-                        " itself, which runs (" + util::durationText(*neighbour->settings.driveTimeout()) +
-                        "): " + name + " may trip or stop by that; shorten the gateway's time-out");
+                        ", which is running (" + util::durationText(*neighbour->settings.driveTimeout()) +
+                        "): " + name + " may trip or stop because of it; shorten the gateway's time-out");
   }
 }
 
@@ -190,7 +190,7 @@ Duration GatewayTraffic::worstStop() const
   return wire + static_cast<int>(silent) * block();
 }
 
-/// For how long a silent station keeps the gateway: as measured, or as configured until it is.
+/// For how long a silent station blocks the gateway: as measured, or as configured until then.
 Duration GatewayTraffic::block() const
 {
   return bus_.gateway.block() > Duration::zero() ? bus_.gateway.block() : bus_.gateway.wait();
@@ -201,7 +201,7 @@ std::string GatewayTraffic::returnText() const
 {
   if (const Inverter* const neighbour = endangered())
   {
-    return "not while " + neighbour->config.name + " runs, whose own time-out is shorter than the gateway is kept";
+    return "not while " + neighbour->config.name + " runs: its own time-out is shorter than the gateway's block";
   }
   const auto offline = std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
                                      [](const auto& inverter) { return inverter->link.offline(); });
@@ -221,16 +221,16 @@ std::optional<Finding> GatewayTraffic::finding() const
   {
     return Finding{ Level::Warn,
                     "the gateway leaves requests to a silent station unanswered: set a time-out in it, so "
-                    "that it says so within response_timeout" };
+                    "that it reports them within response_timeout" };
   }
-  return Finding{ Level::Warn, "a station that does not answer keeps the gateway for " +
-                                   util::durationText(bus_.gateway.block()) +
-                                   ", and everything waits meanwhile, a stop too: shorten the gateway's own time-out x "
-                                   "(1 + repeats) below response_timeout (" +
-                                   util::durationText(allowed) + ")" };
+  return Finding{ Level::Warn,
+                  "a station that does not answer blocks the gateway for " + util::durationText(bus_.gateway.block()) +
+                      ", and everything waits meanwhile, even a stop: shorten the gateway's own time-out x "
+                      "(1 + repeats) below response_timeout (" +
+                      util::durationText(allowed) + ")" };
 }
 
-/// What it does to numbers and units, so that replies are told apart by their shapes alone.
+/// What it does to numbers and units, if replies can be told apart by their shapes alone.
 std::optional<Finding> GatewayTraffic::quirkFinding() const
 {
   const std::string& quirk = bus_.line_watch.facts().gateway_quirk;

@@ -13,7 +13,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What may go while a Modbus TCP gateway still works on earlier requests (contract, 8.8), and what users are told of it.
+/// What may go while a Modbus TCP gateway still works on earlier requests (contract, 8.8), and what is reported of it.
 /// Without a gateway everything may go.
 class GatewayTraffic
 {

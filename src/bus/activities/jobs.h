@@ -18,16 +18,16 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What a job has changed in the drive, or may have, however it ended: it is looked at again.
+/// What a job has changed in the drive, or may have, however it ended: it is read again.
 struct Aftermath
 {
   /// Name of the parameter that was written; empty: none.
   std::string parameter;
   /// The drive still has to be led out of its setup area.
   bool leave_setup = false;
-  /// The drive may have forgotten what it was told at connect.
+  /// The drive may have forgotten what it was sent at connect.
   bool connect_again = false;
-  /// Nobody waits for the answer: it is logged under this name, and all settings are read again. Empty: somebody does.
+  /// No caller waits for the answer: it is logged under this name, and all settings are read again. Empty: a caller waits.
   std::string logged_as;
 };
 
@@ -52,16 +52,16 @@ public:
   virtual wire::Request next() = 0;
   /// A valid reply or an exception.
   virtual Progress done(const wire::Reply& reply) = 0;
-  /// Lost after its repeats. Ends the job unless a subclass knows better.
+  /// Lost after its repeats. Ends the job unless a subclass overrides that.
   virtual Progress lost(const wire::Reply& reply);
 
-  /// The next frame may only go while the motor stands and no command waits.
+  /// The next frame may go only while the motor is at rest and no command waits.
   virtual bool needsRest() const
   {
     return false;
   }
 
-  /// The frame that next() returned last reaches the EEPROM, or resets the drive: its reply is waited for whatever comes
+  /// The frame that next() returned last reaches the EEPROM, or resets the drive: its reply is waited for in any case
   /// (contract, 8.4).
   virtual bool lasting() const
   {
@@ -109,8 +109,8 @@ private:
   Answer answer_;
 };
 
-/// Clears a trip. Sends nothing that could start a motor: RUN is read back as off directly before the reset. Where the drive
-/// can't tell, the coordinator has a stop confirmed first.
+/// Clears a trip. Sends nothing that could start a motor: RUN is read back as off directly before the reset. Where the
+/// drive can't report RUN, the coordinator has a stop confirmed first.
 class ResetJob : public Job
 {
 public:

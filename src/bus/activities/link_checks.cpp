@@ -19,7 +19,7 @@ LinkChecks::LinkChecks(BusState& bus, const GatewayTraffic& traffic) : bus_(bus)
 }
 
 /// After a reopening: pending stops, then one read of each inverter that was online, before anything else. A stop that
-/// insists in vain lets these reads through, and one that has lost nothing but writes is read first: it may be away.
+/// keeps trying in vain lets these reads through, and one that has lost nothing but writes is read first: it may be away.
 std::optional<Pick> LinkChecks::pick(TimePoint now, Gate& gate)
 {
   while (const auto index = bus_.connection.toRead())
@@ -56,7 +56,7 @@ void LinkChecks::note(const wire::Reply& reply)
   }
   if (bus_.link.wasSilent(reply.finished_at))
   {
-    // What probes have cost meanwhile has delayed nobody.
+    // The cost of probes meanwhile has delayed no other exchange.
     bus_.scheduler.restartProbes(reply.finished_at);
   }
   bus_.link.answered();

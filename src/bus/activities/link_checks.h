@@ -11,7 +11,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Is anybody there? The reads that follow a reopening (contract, 8.9), and links that have gone mute (8.10).
+/// Does any drive answer? The reads that follow a reopening (contract, 8.9), and links that have gone mute (8.10).
 class LinkChecks
 {
 public:
@@ -20,7 +20,7 @@ public:
   /// After a reopening: what goes before anything else; nothing: no check is due.
   std::optional<Pick> pick(TimePoint now, Gate& gate);
   void note(const wire::Reply& reply);
-  /// The link is mute and is to be opened anew.
+  /// The link is mute and is to be reopened.
   bool renewalDue(TimePoint now) const;
 
 private:

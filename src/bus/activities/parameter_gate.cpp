@@ -60,14 +60,14 @@ WriteVerdict unarmed(const drive::Drive& drive, const std::string& name, const d
   {
     if (parameter.setup && drive.sequence(sequence) == nullptr)
     {
-      return refusal(ERROR_NOT_ARMED, name +
-                                          " is taken in the drive's setup area only, and the way there is not armed: " +
-                                          drive.armingAdvice(sequence));
+      return refusal(ERROR_NOT_ARMED,
+                     name + " is accepted in the drive's setup area only, and the way there is not armed: " +
+                         drive.armingAdvice(sequence));
     }
   }
   if (!drive.findParameter(name, true))
   {
-    return refusal(ERROR_NOT_ARMED, name + (parameter.item.missing ? ": nobody knows its place: give it under overrides"
+    return refusal(ERROR_NOT_ARMED, name + (parameter.item.missing ? ": its place is unknown: set it under overrides"
                                                                    : " is unconfirmed: confirm '" +
                                                                          drive.missingForParameter(name) + "'"));
   }
@@ -107,7 +107,7 @@ WriteVerdict checkWrite(const drive::Drive& drive, const std::string& name, doub
   if (persist && profile.writes == drive::Writes::Unknown)
   {
     return refusal(ERROR_NOT_OFFERED,
-                   "the drive's manual does not say whether a write outlives a power-off: call with persist = false");
+                   "the drive's manual does not say whether a write survives a power-off: call with persist = false");
   }
   WriteVerdict verdict;
   verdict.raw = encoded.raw;
@@ -121,17 +121,16 @@ WriteVerdict whyNotReadable(const drive::Drive& drive, const std::string& name)
   if (!missing.empty())
   {
     const bool unknown = profile.parameters.at(name).item.missing;
-    return refusal(ERROR_NOT_ARMED,
-                   "parameter '" + name +
-                       (unknown ? "': nobody knows its register: give it under overrides (parameters: {" + name +
-                                      ": {register: ...}})"
-                                : "' is unconfirmed: confirm '" + missing + "'"));
+    return refusal(ERROR_NOT_ARMED, "parameter '" + name +
+                                        (unknown ? "': its register is unknown: set it under overrides (parameters: {" +
+                                                       name + ": {register: ...}})"
+                                                 : "' is unconfirmed: confirm '" + missing + "'"));
   }
   const bool any = std::any_of(profile.parameters.begin(), profile.parameters.end(),
                                [](const auto& entry) { return entry.second.item.unconfirmed.empty(); });
   if (!any)
   {
-    return refusal(ERROR_NOT_ARMED, "the profile " + profile.name + " knows no parameter's place: give '" +
+    return refusal(ERROR_NOT_ARMED, "the profile " + profile.name + " knows no parameter's place: set '" +
                                         util::printable(name) + "' under overrides");
   }
   return refusal(ERROR_OUT_OF_RANGE, "'" + util::printable(name) + "' is no parameter of " + profile.name +

@@ -12,8 +12,8 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// The verdict on a parameter that is to be written, or can't be read (contract, 4.10). Pure: nothing but the drive's profile and
-/// what is passed in decides.
+/// The verdict on a parameter that is to be written, or can't be read (contract, 4.10). Pure: only the drive's profile
+/// and the arguments decide.
 struct WriteVerdict
 {
   /// 0: it may.
@@ -24,7 +24,8 @@ struct WriteVerdict
   std::uint32_t raw = 0;
 };
 
-/// May this parameter be written? \p value in its own unit. \p read_only_access: key `parameter_access: read_only`. \p may_run: the motor runs, or may.
+/// May this parameter be written? \p value in its own unit. \p read_only_access: key `parameter_access: read_only`. \p
+/// may_run: the motor runs, or may.
 WriteVerdict checkWrite(const drive::Drive& drive, const std::string& name, double value, bool persist,
                         bool read_only_access, bool may_run);
 

@@ -83,7 +83,7 @@ bool WriteParameterJob::needsRest() const
 
 bool WriteParameterJob::lasting() const
 {
-  // What the manual does not say may reach it.
+  // Where the manual does not say, it may reach the EEPROM.
   const bool ram = phase_ == Phase::Write && drive_.profile().writes == drive::Writes::Ram;
   return phase_ != Phase::Busy && !ram;
 }
@@ -99,7 +99,7 @@ Job::Progress WriteParameterJob::lost(const wire::Reply& reply)
   {
     return Job::lost(reply);
   }
-  // The drive must not stay in its setup area: leave it, until the bound ends the trying.
+  // The drive must not stay in its setup area: leave it, and keep trying until the bound is over.
   refused_id_ = refused_id_ != 0 ? refused_id_ : reply.error_id;
   refused_ = refused_.empty() ? "writing " + parameter_.name + ": " + errorText(reply.error_id) : refused_;
   answer().error_id = refused_id_;
@@ -157,7 +157,7 @@ std::string WriteParameterJob::kept() const
 {
   return drive_.profile().writes == drive::Writes::Eeprom
              ? " written to the EEPROM"
-             : " written; the manual does not say whether it outlives a power-off";
+             : " written; the manual does not say whether it survives a power-off";
 }
 
 Job::Progress WriteParameterJob::afterWrite()
@@ -264,7 +264,7 @@ Job::Progress ConfigureMapJob::done(const wire::Reply& reply)
   const Progress progress = WriteParameterJob::done(reply);
   if (progress == Progress::Done && answer().success)
   {
-    answer().message += "; switch the drive off and on: its register map counts from then";
+    answer().message += "; switch the drive off and on: its register map takes effect then";
   }
   return progress;
 }

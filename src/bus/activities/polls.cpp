@@ -29,7 +29,7 @@ InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
   current.request = inverter.drive.read(inverter.config.node, block);
   while (!resync && !line.mayAsk(current.request, now) && inverter.refresh.skipSlow())
   {
-    // What decides over safety does not wait a second for a temperature.
+    // What decides safety does not wait a second for a temperature.
     block = inverter.refresh.next(now);
     current.request = inverter.drive.read(inverter.config.node, block);
   }
@@ -54,8 +54,8 @@ InFlight Polls::compose(TimePoint now, const Pick& pick, const LineView& line)
 }
 
 /// Where only writes, or the command word, feed the drive's own time-out (contract, 8.17): what is in force once more. Rule
-/// 4.1: our RUN only while the last exchange showed it in force, never through a gateway, which could carry it out when
-/// everything has changed, or has just been connected anew (contract, 8.8, 8.9 and 8.11); at rest the stop word.
+/// 4.1: RUN only while the last exchange showed it in force, never through a gateway, which could carry it out when
+/// everything has changed, or has just been reconnected (contract, 8.8, 8.9 and 8.11); at rest the stop word.
 void Polls::keepAlive(TimePoint now, Inverter& inverter, InFlight& current, const LineView& line) const
 {
   const drive::Sequence* stop = inverter.drive.sequence("stop");
@@ -137,7 +137,7 @@ void Polls::ended(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// What an answer to a read of the refresh says, which goes on with \p more.
+/// What follows from the answer to a read of the refresh, which goes on with \p more.
 void Polls::took(const wire::Reply& reply, Inverter& inverter, bool more)
 {
   inverter.noteStatus(reply, more);
@@ -195,7 +195,7 @@ void Polls::keptAlive(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// It answers, but refuses to tell: the last good values keep their stamp.
+/// It answers, but refuses the read: the last good values keep their stamp.
 void Polls::refusedStatus(const wire::Reply& reply, Inverter& inverter)
 {
   if (inverter.refresh.takeRefusal() || inverter.link.offline())

@@ -12,7 +12,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// The status of each inverter: which read is next, and what follows from what it tells (contract, 3.6, 4.1, 4.7 and 4.8).
+/// The status of each inverter: which read is next, and what follows from its answer (contract, 3.6, 4.1, 4.7 and 4.8).
 class Polls
 {
 public:
@@ -37,7 +37,7 @@ private:
   const ReplyGuard& guard_;
   Stops& stops_;
   Absences& absences_;
-  /// Of the read at hand, by inverter.
+  /// Of the current read, by inverter.
   std::vector<Repeats> repeats_;
 };
 }  // namespace bus

@@ -30,7 +30,7 @@ void PortWatch::opened(TimePoint now)
   last_unanswered_.reset();
   const bool same = bus_.connection.resuming() || renewing_;
   renewing_ = false;
-  // Connections that are closed again and again must not be a way around the probes' share (contract, 8.9).
+  // Connections that are closed again and again must not be a way round the probes' share (contract, 8.9).
   bus_.scheduler.restartCycle(now, !same && bus_.connection.closedUnused() == 0);
   bus_.connection.opened(now, onlineInverters());
   if (!failing_ && !same)
@@ -77,7 +77,7 @@ void PortWatch::missing(TimePoint now, const std::string& error, bool in_use)
   error_ = error;
   if (news)
   {
-    // Also when it was told of before: what was there over a connection since is gone now.
+    // Even if it was reported before: what has answered over a connection since then is gone now.
     complained_ = true;
     bus_.outbox.log(in_use ? Level::Warn : Level::Error,
                     error + (in_use ? "; trying again for a while" : "; the node keeps trying"), PORT_SUBJECT);
@@ -108,7 +108,7 @@ void PortWatch::lost(TimePoint now)
   if (unused && bus_.configuration.bus.gateway)
   {
     const std::string& words = bus_.line_watch.facts().peer_words;
-    fails(now, "port " + port + " is closed by its other end as soon as it is open" +
+    fails(now, "port " + port + " is closed by the other end as soon as it is opened" +
                    (words.empty() ? "" : ", which says '" + words + "'") +
                    ": another client may hold it, or it serves another protocol mode");
     return;
@@ -152,7 +152,7 @@ bool PortWatch::resumes(TimePoint now, std::optional<std::size_t> index)
     bus_.connection.lost();
     return false;
   }
-  // Our own time-out may have passed before the gateway's.
+  // This node's own time-out may have passed before the gateway's.
   const ConnectionWatch::Verdict verdict = bus_.connection.closed(now, index ? index : last_unanswered_);
   if (verdict == ConnectionWatch::Verdict::TakenByAnother)
   {
@@ -191,7 +191,7 @@ std::vector<std::size_t> PortWatch::onlineInverters() const
   return online;
 }
 
-/// After each exchange: who is there over this connection.
+/// After each exchange: which inverters answer over this connection.
 void PortWatch::noteConnection(TimePoint now, const InFlight& current, const wire::Reply& reply)
 {
   last_unanswered_.reset();
@@ -206,7 +206,7 @@ void PortWatch::noteConnection(TimePoint now, const InFlight& current, const wir
   }
   if (bus_.connection.nobodyAnswered())
   {
-    bus_.outbox.log(Level::Error, "port " + bus_.configuration.bus.port + ": is open again, but nobody answers",
+    bus_.outbox.log(Level::Error, "port " + bus_.configuration.bus.port + ": is open again, but no drive answers",
                     PORT_SUBJECT);
     bus_.connection.lost();
     absences_.loseEverybody(now, wire::ERROR_TIMEOUT);
@@ -219,10 +219,10 @@ void PortWatch::renewing(TimePoint now)
   {
     bus_.outbox.log(Level::Warn,
                     "port " + bus_.configuration.bus.port +
-                        ": is open, but nobody answers any more: it is opened anew, again and again while that lasts",
+                        ": is open, but no drive answers any more: it is reopened from time to time while that lasts",
                     PORT_SUBJECT);
   }
-  // So long without an answer is no gap any more: whatever runs is to be stopped first when somebody answers again.
+  // So long without an answer is no gap any more: whatever runs is to be stopped first when a drive answers again.
   absences_.loseEverybody(now, wire::ERROR_TIMEOUT);
   bus_.connection.lost();
   bus_.gateway.connectionEnded(now);

@@ -32,14 +32,14 @@ public:
   void closed(TimePoint now);
   void lost(TimePoint now);
   void closedForTelnet(TimePoint now);
-  /// The link is mute and is opened anew.
+  /// The link is mute and is reopened.
   void renewing(TimePoint now);
-  /// It is opened anew for any other reason of ours: motors run on.
+  /// It is reopened for any other reason of this node's: motors run on.
   void reopening(TimePoint now);
   /// The other end has closed the connection, in place of the answer of \p index or between two exchanges. True: it is
   /// opened again at once, and nothing else happens.
   bool resumes(TimePoint now, std::optional<std::size_t> index);
-  /// After each exchange: who is there over this connection.
+  /// After each exchange: which inverters answer over this connection.
   void noteConnection(TimePoint now, const InFlight& current, const wire::Reply& reply);
 
   /// It is open, and did not fail as soon as it was used.
@@ -68,7 +68,7 @@ private:
   bool complained_ = false;
   std::string error_;
   std::uint64_t opens_ = 0;
-  /// It is being opened anew because it was mute.
+  /// It is being reopened because it was mute.
   bool renewing_ = false;
   /// To whom the last request went, if it was not answered.
   std::optional<std::size_t> last_unanswered_;

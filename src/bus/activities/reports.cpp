@@ -31,7 +31,7 @@ void Reports::noteAdapter(const std::optional<wire::AdapterLatency>& latency)
 
 void Reports::publishSlowly(TimePoint now)
 {
-  // Behind a gateway that is kept busy no refresh comes, but locks and stops are to be seen.
+  // Behind a gateway that is kept busy no refresh comes, but locks and stops must be visible.
   const bool busy = !bus_.gateway.free(now);
   for (const auto& inverter : bus_.inverters)
   {
@@ -48,7 +48,7 @@ void Reports::publishSlowly(TimePoint now)
   {
     bus_.meter.cycle(bus_.scheduler.cycleTime());
   }
-  // A loss is told at once (contract, 8.16).
+  // A loss is reported at once (contract, 8.16).
   const bool connected = port_.usable();
   const bool changed = connected != published_connected_;
   if (changed || (cycle_done && since >= seconds(BUS_STATUS_SHORTEST_S)) || since >= seconds(BUS_STATUS_LONGEST_S))
@@ -173,7 +173,7 @@ void Reports::addValues(Report& report) const
   report.values.emplace_back("longest pause in a reply", util::millisecondsText(bus_.budget.longest_pause));
   if (bus_.gateway.active())
   {
-    report.values.emplace_back("gateway kept by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
+    report.values.emplace_back("gateway blocked by a silent station", util::millisecondsText(bus_.gateway.block(), 0));
     report.values.emplace_back("offline inverter back within", traffic_.returnText());
   }
   report.values.emplace_back("slow values", bus_.slow_share.reads()

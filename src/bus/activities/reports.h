@@ -14,7 +14,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the bus tells of itself: its status at the rates of the contract (section 2), and /diagnostics.
+/// What the bus reports of itself: its status at the rates of the contract (section 2), and /diagnostics.
 class Reports
 {
 public:
@@ -22,7 +22,7 @@ public:
 
   void publishSlowly(TimePoint now);
   Report report(TimePoint now) const;
-  /// What the open port tells of its adapter; nothing: its driver does not tell.
+  /// What the open port reports of its adapter; nothing: its driver does not say.
   void noteAdapter(const std::optional<wire::AdapterLatency>& latency);
 
 private:

@@ -70,7 +70,7 @@ Job::Progress ResetJob::afterStep()
   return Progress::GoesOn;
 }
 
-/// A step without a reply that got lost on the line is sent again; one that made the drive start anew never is.
+/// A step without a reply that got lost on the line is sent again; one that made the drive restart never is.
 Job::Progress ResetJob::afterRestartCheck(const wire::Reply& reply)
 {
   drive::Monitor monitor;
@@ -131,7 +131,7 @@ Job::Progress ResetJob::verify(const wire::Reply& reply)
   if (++still_tripped_ == VERIFICATIONS_BEFORE_REPEAT && drive_.runBlock() &&
       drive_.sequence("reset")->steps.front().expects_reply)
   {
-    // Not where each reset makes the drive start anew.
+    // Not where each reset makes the drive restart.
     // A reset coil that an earlier master left on gave no edge the first time.
     phase_ = Phase::CheckRun;
     step_ = 0;
@@ -143,7 +143,7 @@ Job::Progress ResetJob::refused(const wire::Reply& reply)
 {
   if (phase_ == Phase::CheckRun)
   {
-    return refusedByDrive(reply, "nothing was reset, since the drive does not tell whether RUN is off");
+    return refusedByDrive(reply, "nothing was reset, since the drive does not report whether RUN is off");
   }
   if (phase_ != Phase::Verify)
   {
@@ -153,7 +153,7 @@ Job::Progress ResetJob::refused(const wire::Reply& reply)
   {
     return notTold();
   }
-  // Busy, after all: the reset itself was taken.
+  // Busy, after all: the reset itself was accepted.
   answer().error_id = reply.error_id;
   answer().message = "reset sent; whether the trip is gone is unknown: " + drive_.exceptionText(reply.error_id);
   pause_ = seconds(VERIFY_PERIOD_S);
@@ -186,7 +186,7 @@ Job::Progress ResetJob::lost(const wire::Reply& reply)
   {
     return Job::lost(reply);
   }
-  // Sent again and again to a drive that is away, a step must not prolong the deafness for ever.
+  // Sent again and again to a drive that is away, a step must not prolong its deafness for ever.
   deafening_ = phase_ == Phase::Steps && step_ >= steps_sent_;
   steps_sent_ = deafening_ ? step_ + 1 : steps_sent_;
   // A drive that restarts after a reset is deaf for a while; leaving the reset coil on would hold it in reset.

@@ -35,7 +35,7 @@ std::optional<InFlight> Services::compose(TimePoint now, const Pick& pick)
   }
   if (blind_reset && inverter.stop.pending())
   {
-    // Nobody can ask this drive whether RUN is off: the stop must be confirmed first.
+    // This drive can't be asked whether RUN is off: the stop must be confirmed first.
     bus_.scheduler.postpone(pick.command, now + seconds(BLIND_RESET_PERIOD_S));
     return std::nullopt;
   }
@@ -106,7 +106,7 @@ Ending Services::ended(const InFlight& current, const wire::Reply& reply)
   return isAnswered(reply) ? Ending::Nothing : Ending::Lost;
 }
 
-/// What follows from the frame of a job, whatever its answer: a drive that starts anew.
+/// What follows from the frame of a job, whatever its answer: a drive that restarts.
 void Services::doneStep(TimePoint now, const InFlight& current)
 {
   Inverter& inverter = *bus_.inverters[current.inverter];
@@ -118,7 +118,7 @@ void Services::doneStep(TimePoint now, const InFlight& current)
   }
 }
 
-/// However a job ends: what it may have changed in the drive is looked at again.
+/// However a job ends: what it may have changed in the drive is read again.
 void Services::noteEnd(Inverter& inverter, const Job& job, const Answer& result)
 {
   const Aftermath aftermath = job.aftermath();

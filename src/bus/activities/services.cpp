@@ -40,7 +40,7 @@ void Services::reset(TimePoint now, std::size_t index, AnswerCallback callback)
     return;
   }
   const drive::Monitor& told = inverter.refresh.fresh().monitor;
-  // Not told, or told in a word that nobody knows: what can't be ruled out is reset.
+  // Not reported, or reported in an unknown word: a trip that can't be ruled out is reset.
   if (!inverter.interlock.isFaulted() && !told.tripped().value_or(true))
   {
     Answer nothing;
@@ -124,7 +124,7 @@ void Services::configureMap(TimePoint now, std::size_t index,
         serviceBounds(bus_).write_parameter, AnswerCallback());
 }
 
-/// A brand or model that the profile is not for: what it would do with these requests, nobody knows.
+/// A brand or model that the profile is not for: what it would do with these requests is unknown.
 bool Services::refuseWrongDrive(const Inverter& inverter, const AnswerCallback& callback)
 {
   const bool wrong = inverter.settings.identity() == Identity::Wrong;

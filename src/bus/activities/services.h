@@ -17,7 +17,7 @@ namespace inverter_bus
 namespace bus
 {
 /// Services that take several exchanges: reset, trip memory, parameters. One running job per call, its bound, and its
-/// callers; each of its frames is queued anew (contract, 3.14). What the frames are, the job knows (jobs.h).
+/// callers; each of its frames is queued again (contract, 3.14). The job decides what its frames are (jobs.h).
 class Services
 {
 public:
@@ -30,7 +30,7 @@ public:
   void writeParameter(TimePoint now, std::size_t index, const std::string& name, double value, bool persist,
                       AnswerCallback callback);
   /// \p bound [s] from now on; \p callback may be empty.
-  /// Nobody waits for it: the parameters of the register map and their raw values, not empty, in the order of writing.
+  /// No caller waits for it: the parameters of the register map and their raw values, not empty, in the order of writing.
   void configureMap(TimePoint now, std::size_t index, const std::vector<std::pair<std::string, std::uint32_t>>& wanted);
   void start(TimePoint now, std::size_t index, std::unique_ptr<Job> job, double bound, AnswerCallback callback);
 

@@ -9,7 +9,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// The drive's own settings that decide over safety, read at connect and in the lowest class (contract, 4.5), and what is
+/// The drive's own settings that decide safety, read at connect and in the lowest class (contract, 4.5), and what is
 /// configured after them.
 class SettingsReads
 {

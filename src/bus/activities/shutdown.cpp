@@ -12,7 +12,7 @@ namespace bus
 namespace
 {
 /// At shutdown stops take turns: every one is written before the first of them is read back, so that no motor waits for
-/// another's confirmation; nor for one that somebody asks to be stopped again and again.
+/// another's confirmation; nor for one whose stop is requested again and again.
 bool goesBefore(const StopJob& stop, const StopJob& other)
 {
   return std::make_pair(stop.attempts(), stop.lastSentAt()) < std::make_pair(other.attempts(), other.lastSentAt());
@@ -109,7 +109,7 @@ InFlight Shutdown::composeRelease(const Pick& pick)
   return current;
 }
 
-/// When the next frame of a live inverter's stop may go that waits for a gateway; one that is silent has had its own.
+/// When the next frame of a live inverter's stop that waits for a gateway may go; a silent inverter has had its own.
 TimePoint Shutdown::nextStop(TimePoint now) const
 {
   TimePoint at = TimePoint::max();

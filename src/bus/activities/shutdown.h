@@ -24,7 +24,7 @@ public:
   InFlight composeRelease(const Pick& pick);
   /// All motors confirmed, or the time is up.
   bool done(TimePoint now);
-  /// Answers whoever still waits with 0xB003; names what could not be confirmed.
+  /// Answers callers that still wait with 0xB003; names what could not be confirmed.
   std::vector<std::string> end();
 
 private:

@@ -45,7 +45,7 @@ bool Stops::broadcastIsSafe() const
 
 std::optional<InFlight> Stops::composeBroadcast(TimePoint now)
 {
-  // Who stops all again and again must not keep the single stops from being sent and confirmed.
+  // A stop of all that is requested again and again must not keep the single stops from being sent and confirmed.
   const bool again = broadcast_last_;
   broadcast_last_ = false;
   if (!broadcast_due_ || again)
@@ -116,7 +116,7 @@ Ending Stops::ended(const InFlight& current, const wire::Reply& reply)
   turns_.finish(current, reply, false);
   if (!inverter.stop.pending())
   {
-    // A fresh command took the place of a stop by 0 while its frame was on the wire: write all words anew.
+    // A fresh command replaced a stop by 0 while its frame was on the wire: write all words again.
     inverter.movement.forgetWords();
     return Ending::Nothing;
   }

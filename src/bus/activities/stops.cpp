@@ -28,8 +28,8 @@ void Stops::request(TimePoint now, Inverter& inverter, StopMode mode, bool lock,
   {
     return;
   }
-  // A request in a gateway may set RUN after the first frame of the stop: locked until the second one is confirmed (contract,
-  // 8.8).
+  // A request in a gateway may set RUN after the first frame of the stop: locked until the second one is confirmed
+  // (contract, 8.8).
   const bool locks = lock || bus_.gateway.motionUntil(now, inverter.index);
   if (news)
   {
@@ -46,7 +46,7 @@ void Stops::stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t m
 {
   if (bus_.ended)
   {
-    // Nothing would ever confirm it: the caller would wait for nothing.
+    // Nothing would ever confirm it: the caller would wait in vain.
     bus_.outbox.refuse(callback, ERROR_SHUTTING_DOWN, errorText(ERROR_SHUTTING_DOWN));
     return;
   }
@@ -85,7 +85,7 @@ void Stops::stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t m
   }
   if (call.callback)
   {
-    // Nobody waits for the others: a flood of them must not be kept.
+    // No caller waits for the others: a flood of them must not be kept.
     calls_.push_back(std::move(call));
   }
   finishCalls(now);
@@ -114,7 +114,7 @@ void Stops::finishCalls(TimePoint now)
     Answer reply;
     reply.success = call->problems.empty();
     reply.error_id = reply.success ? ERROR_NONE : call->error_id;
-    reply.message = reply.success ? "stopped: RUN is confirmed off" : "not confirmed; the node goes on insisting";
+    reply.message = reply.success ? "stopped: RUN is confirmed off" : "not confirmed; the node keeps trying";
     for (const std::string& problem : call->problems)
     {
       reply.message += "; " + problem;
@@ -174,7 +174,7 @@ TimePoint Stops::earliestWatchdog(TimePoint wake) const
   return wake;
 }
 
-/// A velocity of 0 that can't be confirmed now takes the way of a stop, which knows how to insist.
+/// A velocity of 0 that can't be confirmed now goes the way of a stop, which keeps trying.
 void Stops::replaceZeros(TimePoint now)
 {
   if (!bus_.gateway.active())

@@ -14,24 +14,25 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// A stop from its request to its answer (contract, 3.1 to 3.3 and 4.3): whoever asks for one, a service, a silence, a
-/// fault, a 0 that can't be confirmed, gets it here. The order in which stops go is the scheduler's, what one frame after the other is, StopJob's.
+/// A stop from its request to its answer (contract, 3.1 to 3.3 and 4.3): every cause of one, a service, a silence, a
+/// fault, a 0 that can't be confirmed, comes here. The scheduler decides in which order stops go, StopJob which frame is
+/// next.
 class Stops
 {
 public:
   Stops(BusState& bus, Turns& turns, GatewayTraffic& traffic);
 
   // --- requests -------------------------------------------------------------------------------------------------------
-  /// Drops whatever was commanded. \p lock: the publishers must return to neutral (4.2), and no newer velocity takes the
-  /// stop's place; behind a gateway that may still set RUN also without it (8.8). \p reason is logged; empty: who asked knows.
+  /// Drops whatever was commanded. \p lock: the publishers must return to neutral (4.2), and no newer velocity replaces
+  /// the stop; behind a gateway that may still set RUN also without it (8.8). \p reason is logged; empty: the caller knows.
   void request(TimePoint now, Inverter& inverter, StopMode mode, bool lock, const std::string& reason);
-  /// The service, of one inverter or of all. \p mode as in Stop.srv; one that nobody knows, or that the drive does not have,
+  /// The service, of one inverter or of all. \p mode as in Stop.srv; one that is unknown, or that the drive does not have,
   /// is carried out as DECELERATE, and the answer says so.
   void stop(TimePoint now, std::optional<std::size_t> index, std::uint8_t mode, AnswerCallback callback);
   void checkWatchdogs(TimePoint now);
   /// \p wake, or when the next inverter's commands have been silent for too long.
   TimePoint earliestWatchdog(TimePoint wake) const;
-  /// Velocities of 0 that can't be confirmed now take the way of a stop, which knows how to insist.
+  /// Velocities of 0 that can't be confirmed now go the way of a stop, which keeps trying.
   void replaceZeros(TimePoint now);
 
   // --- exchanges ------------------------------------------------------------------------------------------------------
@@ -50,7 +51,7 @@ public:
   std::string problem(const Inverter& inverter) const;
   /// The port is gone: no broadcast is due any more.
   void dropBroadcast();
-  /// Nobody asks for the next exchange any more: whoever still waits gets 0xB003.
+  /// No exchange is asked for any more: callers that still wait get 0xB003.
   void refuseCalls();
   Duration latencyMax() const;
 

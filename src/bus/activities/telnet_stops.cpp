@@ -13,7 +13,7 @@ namespace
 {
 // Failed attempts at a stop over a telnet connection before it is closed.
 constexpr unsigned TELNET_STOP_ATTEMPTS = 1;
-// How soon a write is looked at again that waits for the first valid reply of a connection.
+// How soon a write that waits for the first valid reply of a connection is looked at again.
 constexpr double UNPROVEN_PERIOD_S = 0.02;
 }  // namespace
 
@@ -73,7 +73,7 @@ Pick TelnetStops::pick(TimePoint now) const
   return pick;
 }
 
-/// Nothing but reads and stops goes to somebody who may be a telnet server (contract, 8.11).
+/// Nothing but reads and stops goes to a server that may speak telnet (contract, 8.11).
 bool TelnetStops::mustWait(TimePoint now, const InFlight& current)
 {
   const bool unproven = bus_.configuration.bus.gateway && !bus_.configuration.bus.modbus_tcp &&

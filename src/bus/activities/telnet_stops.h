@@ -11,7 +11,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What may go to somebody who may be, or is, a telnet server (contract, 8.11): reads and pending stops.
+/// What may go to a server that may speak telnet, or does (contract, 8.11): reads and pending stops.
 class TelnetStops
 {
 public:
@@ -19,7 +19,7 @@ public:
 
   /// The port was opened.
   void opened();
-  /// It leads to a telnet server, and everything that may be sent to one was: close it.
+  /// It leads to a telnet server, and everything that may be sent to one has been sent: close it.
   bool over(TimePoint now);
   Pick pick(TimePoint now) const;
   /// Nothing but reads and stops goes before the first valid reply; what waits has been put off.
@@ -30,7 +30,7 @@ private:
 
   BusState& bus_;
   Absences& absences_;
-  /// Everybody was given up because of it.
+  /// All inverters were given up because of it.
   bool found_ = false;
   /// Attempts at each pending stop when the connection was opened.
   std::vector<unsigned> attempts_at_open_;

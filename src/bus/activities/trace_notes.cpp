@@ -52,7 +52,7 @@ std::string TraceNotes::nameOf(std::size_t index) const
 
 void TraceNotes::note(Last& last, const std::string& words)
 {
-  // No more than is kept of it: a message may be of any length.
+  // No more than is kept of it: a message may have any length.
   const std::string text = words.substr(0, sizeof(TraceEvent::text));
   if (text == last.text)
   {

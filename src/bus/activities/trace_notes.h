@@ -14,7 +14,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Tells the flight recorder what no log line and no change of a status does: commands, and exchanges that failed.
+/// Records what no log line and no change of a status shows: commands, and exchanges that failed.
 class TraceNotes
 {
 public:
@@ -28,7 +28,7 @@ public:
   void called(const std::string& service, std::optional<std::size_t> index);
   /// An exchange begins: a repeat of one that was lost is named.
   void sent(const InFlight& current);
-  /// It has ended. Probes that nobody answers are passed over: they would fill the record while an inverter is offline.
+  /// It has ended. Unanswered probes are left out: they would fill the record while an inverter is offline.
   void ended(const InFlight& current, const wire::Reply& reply);
 
 private:

@@ -20,8 +20,8 @@ MapOrders mapOrders(TimePoint now, Inverter& inverter)
   return inverter.map_use.orders(now, inverter.settings.map().fits(), run, at_rest);
 }
 
-/// The wire's time for all that takes from the share of the slow values, once: with \p gap before each exchange, \p unread for
-/// one that was not made yet.
+/// The wire's time for all that takes from the share of the slow values, once: with \p gap before each exchange, \p
+/// unread for one that was not made yet.
 Duration slowNeeds(const Inverter& inverter, Duration gap, Duration unread)
 {
   const auto& sources = inverter.drive.profile().command_source;
@@ -36,7 +36,7 @@ Turns::Turns(BusState& bus) : bus_(bus)
 {
 }
 
-/// With what the drives themselves have told of their wait.
+/// Including the waits that the drives themselves have reported.
 Duration Turns::longestExchange() const
 {
   return bus_.budget.longest_exchange + longestReplyDelay();
@@ -66,8 +66,8 @@ const drive::ReadBlock& Turns::nextRead(TimePoint now, Inverter& inverter) const
   return inverter.refresh.next(now, slowLeave(now, inverter));
 }
 
-/// What the share of the slow values leaves to \p inverter (contract, 8.3). One whose warning word has a reason to be another
-/// one goes before all others.
+/// What the share of the slow values leaves to \p inverter (contract, 8.3). One whose warning word is likely to have
+/// changed goes before all others.
 SlowLeave Turns::slowLeave(TimePoint now, const Inverter& inverter) const
 {
   Duration needs{ 0 };
@@ -109,7 +109,7 @@ void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
   }
 }
 
-/// The time that a probe takes from everybody else, with its silences; a refusal takes it too.
+/// The time that a probe takes from all others, with its silences; a refusal takes it too.
 Duration Turns::price(const InFlight& current, const wire::Reply& reply) const
 {
   const Duration own = reply.finished_at - countedFrom(reply);

@@ -18,12 +18,12 @@ public:
 
   /// The end of an exchange. \p more: its inverter or command needs another one (see Scheduler::done()).
   void finish(const InFlight& current, const wire::Reply& reply, bool more);
-  /// The time that a probe takes from everybody else, with its silences; a refusal takes it too.
+  /// The time that a probe takes from all others, with its silences; a refusal takes it too.
   Duration price(const InFlight& current, const wire::Reply& reply) const;
-  /// The read that a refresh of \p inverter goes on with, or begins with: through the drive's register map where that is in use
-  /// (contract, 8.17), and with a slow value where their share has room.
+  /// The read that a refresh of \p inverter goes on with, or begins with: through the drive's register map where that is
+  /// in use (contract, 8.17), and with a slow value where their share has room.
   const drive::ReadBlock& nextRead(TimePoint now, Inverter& inverter) const;
-  /// With what the drives themselves have told of their wait.
+  /// Including the waits that the drives themselves have reported.
   Duration longestExchange() const;
   /// The longest wait of a drive's own (C078) as read from it, beyond what its profile says.
   Duration longestReplyDelay() const;

@@ -84,7 +84,7 @@ std::uint16_t Velocities::judgeOne(TimePoint now, const Inverter& inverter, cons
   {
     return 0;
   }
-  // In the order in which ids count (contract, section 2); what the velocity itself is, was judged before.
+  // In the order in which ids count (contract, section 2); the velocity itself was judged before.
   if (bus_.shutting_down)
   {
     judged.error_id = ERROR_SHUTTING_DOWN;
@@ -235,7 +235,7 @@ void Velocities::apply(TimePoint now, const VelocityCommand& command, const std:
     }
     if (moves)
     {
-      // A unit that is under way goes on counting, whatever comes newly into it.
+      // A unit that is under way goes on counting, whatever new target enters it.
       frames_[inverter.index] = bus_.scheduler.velocityWaits(inverter.index) ? frames_[inverter.index] : 0;
       waiting.inverters.push_back(inverter.index);
     }
@@ -318,7 +318,8 @@ void Velocities::refuse(TimePoint now, const std::vector<std::size_t>& indices, 
   if (group)
   {
     bus_.group_error.note(now, error_id);
-    // The text holds what somebody has sent: a stream of groups, each wrong in another way, is one kind all the same.
+    // The text contains what a publisher has sent: a stream of groups, each wrong in a different way, is one kind all the
+    // same.
     bus_.refusals.refused(now, std::nullopt, error_id, "grouped command refused: " + text);
   }
 }

@@ -19,7 +19,7 @@ class Velocities
 public:
   Velocities(BusState& bus, Turns& turns, const GatewayTraffic& traffic, Stops& stops, Absences& absences);
 
-  /// All of it or nothing; what stops is always carried out. Returns the error id of a refused command, else 0.
+  /// All of it or nothing; stopping members are always carried out. Returns the error id of a refused command, else 0.
   std::uint16_t command(TimePoint now, const VelocityCommand& command);
   /// A malformed command.
   void refuse(TimePoint now, const std::vector<std::size_t>& indices, std::uint16_t error_id, const std::string& text,

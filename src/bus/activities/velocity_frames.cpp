@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-// A velocity unit that newer and newer targets keep going before it is complete makes room for others after so many frames
+// A velocity unit that ever newer targets keep going before it is complete makes room for others after this many frames
 // per inverter.
 constexpr unsigned MOST_FRAMES_PER_UNIT = 4;
 constexpr double STATUS_WAIT_S = 0.02;
@@ -32,7 +32,7 @@ bool isRegisterRead(const StatusRead& read)
          !read.block.fields.empty() && read.block.mirrors.empty();
 }
 
-/// RUN must not be sent again before a status has shown that the motor runs: a frame that turns it round got lost.
+/// RUN must not be sent again before a status has shown that the motor runs: a frame that reverses it got lost.
 bool mustBeSeenRunning(const Inverter& inverter)
 {
   return inverter.movement.turnLostAt() && (inverter.drive.reports("operation") || inverter.drive.reports("running"));
@@ -40,7 +40,7 @@ bool mustBeSeenRunning(const Inverter& inverter)
 }  // namespace
 
 /// All command words in one frame where the drive can, with the status in the same exchange where that is what its refresh
-/// wants next (contract, 3.10); a word at a time where such a frame could give back a RUN that the drive has lost (rule 4.1),
+/// wants next (contract, 3.10); a word at a time where such a frame could restore a RUN that the drive has lost (rule 4.1),
 /// where a late reply could be taken for its answer, and after one that got lost.
 std::optional<Write> Velocities::nextWrite(TimePoint now, Inverter& inverter, const LineView& line,
                                            bool& with_status) const
@@ -146,7 +146,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   }
   if (!current.resync)
   {
-    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent anew.
+    // A loop-back that went in its place has changed nothing: what was in force still is, and is not sent again.
     inverter.movement.doubtful(current.write, now);
   }
   if (refusedWithStatus(current, reply) && !cancelled)
@@ -156,7 +156,7 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   const bool lost = !isAnswered(reply);
   // A loop-back that was lost writes nothing.
   const bool too_many = lost && !current.resync && !bus_.behind_another && inverter.lost_writes.lost();
-  // A gateway that says so itself has tried already.
+  // A gateway that reports it has tried already.
   const bool again = lost && inverter.lost_writes.tryAgain() && !too_many && reply.gateway_code == 0;
   if (again && !cancelled)
   {
@@ -184,8 +184,8 @@ void Velocities::ended(const InFlight& current, const wire::Reply& reply)
   }
 }
 
-/// A drive that refuses a frequency in one frame with a read gets it by a plain write, once more and from now on: it may not
-/// know that function, whatever its manual says.
+/// A drive that refuses a frequency in one frame with a read gets it by a plain write, once more and from now on: it may
+/// not know that function, whatever its manual says.
 bool Velocities::refusedWithStatus(const InFlight& current, const wire::Reply& reply)
 {
   if (reply.outcome != wire::Outcome::Exception || !current.with_status || !current.write.more.empty())
@@ -237,7 +237,7 @@ void Velocities::fail(const InFlight& current, const wire::Reply& reply, bool to
   }
   if (zero || current.write.starts)
   {
-    // Nobody knows whether the motor runs: it shall not.
+    // It is unknown whether the motor runs: it must not.
     stops_.request(reply.finished_at, inverter, StopMode::Decelerate, false, "");
   }
   if (current.write.starts)
@@ -254,7 +254,8 @@ bool Velocities::mustBeReadFirst(const Inverter& inverter) const
   return lost_at && target && !target->zero && inverter.refresh.stamp().value_or(TimePoint()) <= *lost_at;
 }
 
-/// What the drive took of a lost write with a read shows in a plain read, which goes before the plain writes (contract, 3.10).
+/// What the drive took of a lost write with a read shows in a plain read, which goes before the plain writes (contract,
+/// 3.10).
 void Velocities::noteLostRead(const InFlight& current, const wire::Reply& reply)
 {
   if (!isAnswered(reply) && current.with_status && !current.resync)
@@ -265,7 +266,7 @@ void Velocities::noteLostRead(const InFlight& current, const wire::Reply& reply)
 }
 
 /// A drive that can't carry out a block write (slots empty or not in effect) gets its words one by one from the next
-/// command on; this one is refused like any other, since nobody knows what the drive took of it.
+/// command on; this one is refused like any other, since it is unknown what the drive took of it.
 void Velocities::noteBlockRefusal(const InFlight& current, const wire::Reply& reply)
 {
   constexpr std::uint8_t CANNOT_BE_EXECUTED = 0x04;

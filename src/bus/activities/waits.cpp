@@ -107,7 +107,7 @@ bool Waits::stopIsNext(const Inverter& inverter) const
   return inverter.stop.pending() && inverter.stop.attempts() < at_once;
 }
 
-/// One that was asked for since \p current was chosen: a stop that insists lets others through on purpose.
+/// One that was requested since \p current was chosen: a stop that keeps trying lets others through on purpose.
 bool Waits::ends(const Inverter& inverter, const InFlight& current) const
 {
   const bool may_start_it = current.may_start && !current.resync && current.inverter == inverter.index;

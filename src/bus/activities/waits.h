@@ -18,7 +18,7 @@ class Waits
 public:
   Waits(BusState& bus, Stops& stops, const Velocities& velocities, const Probes& probes);
 
-  /// How long the adapter may hold a byte back; 0 where nobody knows.
+  /// How long the adapter may hold a byte back; 0 where that is unknown.
   void noteAdapter(Duration latency);
   /// The end of an exchange: how long its drive has taken.
   void note(const InFlight& current, const wire::Reply& reply);

@@ -201,8 +201,8 @@ void checkUnique(const Section& entry, const InverterConfig& inverter, const std
   }
 }
 
-/// To a gateway with several drives 0 is everybody and 255 the gateway itself (Modbus messaging on TCP/IP implementation
-/// guide V1.0b, section 4.4.2.3).
+/// To a gateway with several drives 0 means all of them and 255 the gateway itself (Modbus messaging on TCP/IP
+/// implementation guide V1.0b, section 4.4.2.3).
 void checkAlone(const std::vector<Section>& entries, const std::vector<ConfiguredInverter>& inverters)
 {
   for (std::size_t i = 0; i < inverters.size() && inverters.size() > 1; ++i)
@@ -230,8 +230,8 @@ Configuration inNodeOrder(BusConfig bus, std::vector<ConfiguredInverter> inverte
   return configuration;
 }
 
-/// Parameters below the node's name may be meant for other nodes: those of a helper node, or one that a launch file gives to all
-/// nodes. Any that resembles one of this node's keys stays, to be refused.
+/// Parameters below the node's name may be meant for other nodes: those of a helper node, or one that a launch file gives
+/// to all nodes. Any that resembles one of this node's keys stays, to be refused.
 void dropForeignKeys(Value& parameters, std::vector<std::string>& remarks)
 {
   const auto foreign = [&parameters, &remarks](const config::Entry& entry) {

@@ -64,14 +64,14 @@ std::vector<std::string> readConfirm(const Section& entry)
                  : std::vector<std::string>();
 }
 
-/// A field that can't be left out, or does not exist, is a mistake: the user would believe that a safety word is skipped, or that
-/// a field is read, when neither is so.
+/// A field that can't be left out, or does not exist, is a mistake: the user would believe that a safety word is skipped,
+/// or that a field is read, when neither is so.
 void checkSkipped(const Section& entry, const std::string& field)
 {
   const std::string allowed = "status fields that nothing depends on: " + util::joined(drive::skippableFields());
   if (drive::protectedFields().count(field) != 0)
   {
-    fail(entry, "skip", "holds '" + field + "', which the driver can't do without", allowed);
+    fail(entry, "skip", "holds '" + field + "', which the driver needs", allowed);
   }
   if (drive::skippableFields().count(field) == 0)
   {
@@ -113,8 +113,8 @@ bool begins(const std::string& text, const std::string& start)
   return text.compare(0, start.size(), start) == 0;
 }
 
-/// The profile reader names file and line; this adds the entry that asked for the profile. What is wrong with the entry itself,
-/// its overrides and its confirm it names as it is.
+/// The profile reader names file and line; this adds the entry that asked for the profile. A mistake in the entry itself,
+/// its overrides or its confirm is passed on unchanged.
 drive::Profile loadProfileOf(const InverterConfig& config, const std::string& profile_directory)
 {
   const drive::ProfileChanges& changes = config.changes;
@@ -229,7 +229,7 @@ void readOptions(const Section& entry, const BusConfig& bus, InverterConfig& con
   config.release_on_exit = entry.flag("release_on_exit", config.release_on_exit);
 }
 
-/// Keys that mean something to one protocol only, or contradict others.
+/// Keys that only one protocol uses, or that contradict others.
 void checkProtocolKeys(const Section& entry, const drive::Profile& profile, const BusConfig& bus)
 {
   for (const char* key : { "configure_block", "configure_map" })

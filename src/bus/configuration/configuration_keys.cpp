@@ -19,7 +19,7 @@ bool contains(const Keys& keys, const std::string& key)
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-/// Keys that the contract has for a later version: to ignore them would promise what is not done.
+/// Keys that the contract has for a later version: ignoring them would promise what is not done.
 const Keys& laterKeys()
 {
   static const Keys KEYS{ "in_service", "parameters", "parameters_on_difference" };
@@ -47,8 +47,8 @@ const Keys& simulationKeys()
   return KEYS;
 }
 
-/// Parameters that many ROS nodes have, and that a launch file sets at its top level for all of them; they are not this node's,
-/// although `baud_rate` shares a word with them.
+/// Parameters that many ROS nodes have, and that a launch file sets at its top level for all of them; they are not this
+/// node's, although `baud_rate` shares a word with them.
 bool isOrdinaryRosName(const std::string& key)
 {
   static const Keys NAMES{ "rate", "publish_rate", "update_rate", "loop_rate", "control_rate" };

@@ -19,11 +19,11 @@ const std::vector<std::string>& sharedKeys();
 /// Keys of a scan list entry.
 const std::vector<std::string>& entryKeys();
 
-/// Parameters that lie below the node's name and belong to a library in it (diagnostic_updater).
+/// Parameters below the node's name that belong to a library in it (diagnostic_updater).
 bool isLibraryKey(const std::string& key);
 
-/// The hint for \p key, which is unknown where it is given: a later version will have it, it belongs elsewhere, or which one may be
-/// meant. Empty: it resembles no key of this node at any level, so it was not meant for this node.
+/// The hint for \p key, which is unknown where it is given: a later version will have it, it belongs elsewhere, or which
+/// one may be meant. Empty: it resembles no key of this node at any level, so it was not meant for this node.
 std::string remarkOn(const std::string& key);
 }  // namespace bus
 }  // namespace inverter_bus

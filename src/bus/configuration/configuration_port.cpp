@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 the inverter_bus authors
-// From a judged configuration to the parts of the wire room that it asks for.
+// From a judged configuration to the parts of src/wire that it asks for.
 
 #include "inverter_bus/bus/configuration.h"
 

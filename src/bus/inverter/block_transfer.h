@@ -33,13 +33,13 @@ public:
   /// wears the EEPROM; empty where nothing is to be written.
   std::vector<std::pair<std::string, std::uint32_t>> takeWrites(const std::optional<BlockSlots>& slots);
 
-  /// One of the parameters that select the words was written: what is selected no longer tells what the block brings.
+  /// One of the parameters that select the words was written: what is selected no longer says what the block brings.
   bool isSelectedBy(const std::string& parameter) const;
   /// Neither is used from now on, for the reason \p why.
   void drop(const std::string& why);
   /// The drive was switched off and on, or has come back: whatever was in the way may be gone.
   void tryAgain();
-  /// Why they are not used although the drive has told its selection.
+  /// Why they are not used although the drive has reported its selection.
   std::string whyNot(const BlockSlots& slots) const;
 
 private:

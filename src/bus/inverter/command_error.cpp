@@ -10,17 +10,17 @@ namespace bus
 {
 namespace
 {
-/// What lasts is told as it is; what passes, as something that was.
+/// What lasts is reported in the present tense; what has passed, in the past.
 std::string otherText(std::uint16_t error_id, const std::string& reasons)
 {
   switch (error_id)
   {
     case ERROR_OFFLINE:
-      return "an inverter of it was offline";
+      return "one of its inverters was offline";
     case ERROR_CANCELLED:
-      return "a stop of an inverter of it was under way";
+      return "a stop of one of its inverters was under way";
     case ERROR_LOCKED:
-      return "an inverter of it was locked";
+      return "one of its inverters was locked";
     default:
       return reasons.empty() ? errorText(error_id) : reasons;
   }
@@ -130,7 +130,7 @@ std::string CommandError::pastText() const
   switch (cause_)
   {
     case Cause::Lock:
-      return "was refused: the inverter was locked; it is free now";
+      return "was refused: the inverter was locked; it is unlocked now";
     case Cause::Offline:
       return "was refused: the inverter was offline; it answers again";
     case Cause::Stop:
@@ -162,7 +162,7 @@ std::string CommandError::text(const Obstacles& now, const std::string& offline_
     return lasting ? lastingText(now, offline_reason) : pastText();
   }
   const bool own = lasting && !text_.empty();
-  return group_text_ + (own ? "; this one itself: " + lastingText(now, offline_reason) : "");
+  return group_text_ + (own ? "; this inverter itself: " + lastingText(now, offline_reason) : "");
 }
 }  // namespace bus
 }  // namespace inverter_bus

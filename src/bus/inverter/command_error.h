@@ -10,11 +10,11 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What may stand between an inverter and a velocity, at one moment.
+/// What may bar an inverter from a velocity at a given moment.
 struct Obstacles
 {
   bool locked = false;
-  /// The drive has tripped, which locks it until it was reset.
+  /// The drive has tripped, which locks it until it has been reset.
   bool tripped = false;
   bool offline = false;
   bool stop_pending = false;
@@ -23,16 +23,16 @@ struct Obstacles
   bool wrong_drive = false;
 };
 
-/// The last velocity that was refused or could not be carried out. The id of a refusal stays until the next accepted command
-/// (contract, section 2); its text stays true: what is over is told as over. Behind a refusal, a failure at the drive stays
-/// until a velocity is confirmed, since a stream of accepted ones would hide it.
+/// The last velocity that was refused or could not be carried out. The id of a refusal stays until the next accepted
+/// command (contract, section 2); its text stays true: what is over is reported as over. Behind a refusal, a failure at
+/// the drive stays until a velocity is confirmed, since a stream of accepted ones would hide it.
 class CommandError
 {
 public:
-  /// \p now what stood in the way when it was refused (locked is not asked for)
+  /// \p now what was in the way when it was refused (locked is not asked for)
   void set(std::uint16_t error_id, const std::string& text, const Obstacles& now);
   /// The whole group was refused for the sake of other members, for \p reasons (names and texts). \p own_error_id and
-  /// \p own_text: what stood in the way of this one as well, but counts less; 0: nothing did.
+  /// \p own_text: what was in the way of this one as well, but counts less; 0: nothing did.
   void setForOther(std::uint16_t error_id, const std::string& reasons, std::uint16_t own_error_id,
                    const std::string& own_text, const Obstacles& now);
   /// A velocity was accepted: no refusal is left.

@@ -38,7 +38,7 @@ void ConnectSteps::done(const wire::Reply& reply)
 
 bool ConnectSteps::complete() const
 {
-  // One that is not confirmed can't be told.
+  // A step that is not confirmed can't be sent.
   return drive_.profile().sequences.count("connect") == 0 || told_ == Told::Known;
 }
 

@@ -12,21 +12,21 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the drive is told once at every connect: the profile's sequence `connect`, step by step. Pure. Not thread safe; the
-/// bus guards it.
+/// What is sent to the drive once at every connect: the profile's sequence `connect`, step by step. Pure. Not thread
+/// safe; the bus guards it.
 class ConnectSteps
 {
 public:
   /// \p drive must outlive it.
   explicit ConnectSteps(const drive::Drive& drive);
 
-  /// All of it again: the drive has come back, or has forgotten what it was told.
+  /// All of it again: the drive has come back, or has forgotten what it was sent.
   void restart();
   /// The step that is due; null: none.
   const drive::Step* next() const;
   /// The answer to it.
   void done(const wire::Reply& reply);
-  /// All was told, or there is nothing to tell.
+  /// All steps were sent, or there are none.
   bool complete() const;
   /// With which error id the drive has refused a step; 0: it has not.
   std::uint16_t refusedWith() const;

@@ -12,7 +12,7 @@ DriveIdentity::DriveIdentity(const drive::Drive& drive, std::uint8_t station) : 
   {
     wants_model_ = wants_model_ || !expectation.model.empty();
   }
-  // A model that nobody judges is still worth showing.
+  // A model that is not checked is still worth showing.
   wants_model_ = wants_model_ || drive.readAttributes(station).has_value();
 }
 
@@ -74,7 +74,7 @@ std::string DriveIdentity::text(const SettingList& settings) const
 {
   if (judge(settings) == Identity::Unknown)
   {
-    return "the drive has not told yet what it is";
+    return "the drive has not reported yet what it is";
   }
   for (const drive::Expectation& expectation : drive_.profile().identity)
   {
@@ -89,7 +89,7 @@ std::string DriveIdentity::text(const SettingList& settings) const
     }
     const std::string what = expectation.model.empty() ? expectation.parameter : "its model";
     const std::string told = expectation.model.empty() && setting != nullptr ? std::to_string(setting->raw) : model_;
-    return "wrong drive: " + what + (refused ? " is not to be had" : " is '" + told + "'") +
+    return "wrong drive: " + what + (refused ? " cannot be read" : " is '" + told + "'") +
            (expectation.advice.empty() ? "" : "; " + expectation.advice);
   }
   return "";
@@ -102,7 +102,7 @@ const std::string& DriveIdentity::model() const
 
 std::string DriveIdentity::modelText() const
 {
-  const std::string text = told_ == Told::Known ? model_ : "not told";
+  const std::string text = told_ == Told::Known ? model_ : "not reported";
   return wants_model_ ? text : "";
 }
 }  // namespace bus

@@ -13,10 +13,10 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the drive says of itself against what its profile expects.
+/// What the drive says about itself, compared with what its profile expects.
 enum class Identity
 {
-  /// It fits, or the profile knows nothing that would tell it from another.
+  /// It fits, or the profile has nothing that distinguishes it from another drive.
   Right,
   /// It has not been asked yet.
   Unknown,
@@ -31,18 +31,18 @@ public:
   /// \p drive must outlive it.
   DriveIdentity(const drive::Drive& drive, std::uint8_t station);
 
-  /// The model is asked for anew (the drive has come back).
+  /// The model is asked for again (the drive has come back).
   void restart();
-  /// The request for the model; empty: it is known, refused or not to be had.
+  /// The request for the model; empty: it is known, refused, or cannot be read.
   std::optional<wire::Request> next() const;
   /// The answer to it.
   void done(const wire::Reply& reply);
 
-  /// \p settings as far as the drive has told them.
+  /// \p settings as far as the drive has reported them.
   Identity judge(const SettingList& settings) const;
-  /// Why the drive gets no command but a stop: it is the wrong one, or has not told yet what it is; empty: it is right.
+  /// Why the drive gets no command but a stop: it is the wrong one, or has not reported yet what it is; empty: it is right.
   std::string text(const SettingList& settings) const;
-  /// As the drive names itself; empty: not told.
+  /// As the drive names itself; empty: not reported.
   const std::string& model() const;
   /// Of the model, for /diagnostics; empty: it is not asked for.
   std::string modelText() const;

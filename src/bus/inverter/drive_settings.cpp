@@ -50,8 +50,8 @@ void DriveSettings::underCommand(bool in_force)
   in_force ? settings_.commanded() : settings_.released();
 }
 
-/// The step of the sequence `connect` that is due: a drive that is another one than expected is told nothing, and what tells
-/// whether it is goes before.
+/// The step of the sequence `connect` that is due: a drive other than the expected one is sent nothing, and the reads that
+/// show whether it is go first.
 const drive::Step* DriveSettings::connectStep() const
 {
   const bool right = identity() == Identity::Right && !settings_.urgent();
@@ -190,9 +190,8 @@ std::vector<Finding> DriveSettings::findings() const
   }
   if (connect_.refusedWith() != 0)
   {
-    findings.push_back(
-        { Level::Warn, "the drive refused what it is told at connect: " + drive_.exceptionText(connect_.refusedWith()) +
-                           "; check the sequence connect" });
+    findings.push_back({ Level::Warn, "the drive refused a command of the sequence connect: " +
+                                          drive_.exceptionText(connect_.refusedWith()) + "; check that sequence" });
   }
   const std::vector<Finding> own = settingFindings(drive_, settings_);
   findings.insert(findings.end(), own.begin(), own.end());
@@ -204,7 +203,7 @@ std::vector<std::pair<std::string, std::string>> DriveSettings::values() const
   std::vector<std::pair<std::string, std::string>> values;
   if (const std::string model = identity_.modelText(); !model.empty())
   {
-    values.emplace_back("model as the drive names itself", model);
+    values.emplace_back("model reported by the drive", model);
   }
   const auto own = settingValues(drive_, settings_);
   values.insert(values.end(), own.begin(), own.end());

@@ -21,9 +21,9 @@ namespace inverter_bus
 namespace bus
 {
 /// What is settled with a drive once at every connect. First what decides whether it may be commanded at all: what it is
-/// (identity) and what it must be told (the profile's sequence `connect`). Then, in the lowest class, its own settings
-/// that decide over safety: who may command it, what it does when the bus falls silent, whether it restarts by itself, how
-/// long it waits before it answers (contract, sections 3.8, 3.12, 4.1 and 4.5).
+/// (identity) and what it must be sent (the profile's sequence `connect`). Then, in the lowest class, its own settings
+/// that decide safety: which source may command it, what it does when the bus falls silent, whether it restarts by
+/// itself, how long it waits before it answers (contract, sections 3.8, 3.12, 4.1 and 4.5).
 class DriveSettings
 {
 public:
@@ -32,9 +32,13 @@ public:
 
   /// Settles everything again (the drive has come back).
   void restart();
+<<<<<<< HEAD
   /// Many of its parameters were written: all are read again. It is the same drive, so that nothing is locked meanwhile.
   void rereadAll();
   /// The drive has forgotten what it was told: the sequence `connect` goes again.
+=======
+  /// The drive has forgotten what it was sent: the sequence `connect` goes again.
+>>>>>>> h/lang
   void connectAgain();
   /// The drive may have been left in its setup area: it is led out of it before anything else.
   void leaveSetup();
@@ -45,7 +49,7 @@ public:
   bool pending() const;
   /// next() writes.
   bool nextWrites() const;
-  /// next() asks for what was told before, or refused for the moment: it takes from the share of the slow values
+  /// next() asks for what was reported before, or refused for the moment: it takes from the share of the slow values
   /// (contract, 8.3).
   bool repeats() const;
   wire::Request next() const;
@@ -55,20 +59,20 @@ public:
   Duration pauseBeforeNext() const;
   /// A parameter was written through the node: what it means may have changed.
   void reread(const std::string& parameter);
-  /// A command of ours is \p in_force: who commands the drive can be seen only now; again: it is looked at anew. False: a stop
-  /// of ours was confirmed, and what was seen under command counts no more.
+  /// A command of this node is \p in_force: only now can it be seen what commands the drive; calling it again re-reads it.
+  /// False: a stop was confirmed, and what was seen under command no longer counts.
   void underCommand(bool in_force);
 
   Identity identity() const;
-  /// Why the drive gets no command but a stop: it is the wrong one, or has not told yet what it is; empty: it is right.
+  /// Why the drive gets no command but a stop: it is the wrong one, or has not reported yet what it is; empty: it is right.
   std::string identityText() const;
-  /// As the drive names itself (CompoWay/F); empty: not told.
+  /// As the drive names itself (CompoWay/F); empty: not reported.
   const std::string& model() const;
   /// The sequence `connect` was carried out, or there is none.
   bool connected() const;
   /// Ratings as read from the drive.
   drive::Ratings ratings() const;
-  /// Selections of the block read and write; empty before all are known, or where the drive refuses to tell.
+  /// Selections of the block read and write; empty before all are known, or where the drive refuses the read.
   std::optional<BlockSlots> blockSlots() const;
 
   /// What the drive has in its register map.

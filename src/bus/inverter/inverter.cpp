@@ -15,7 +15,7 @@ namespace
 // Share of the drive's own time-out after which it is served whatever else waits.
 constexpr double TIMEOUT_SHARE = 0.8;
 
-/// The drive's own no, not silence or damage.
+/// A refusal by the drive itself, not silence or damage.
 bool isRefusal(std::uint16_t error_id)
 {
   return error_id != 0 && error_id != wire::ERROR_TIMEOUT && error_id != wire::ERROR_DAMAGED &&
@@ -81,7 +81,7 @@ bool Inverter::refusedStatus(std::uint16_t error_id)
 
 void Inverter::goOffline(std::uint16_t error_id)
 {
-  // What refuses to tell its status has been there all the time: what it is need not be asked again.
+  // A drive that refuses its status has been there all the time: it need not be identified again.
   const bool refused = isRefusal(error_id);
   link.goOffline(error_id);
   command_error.wentOffline();
@@ -91,12 +91,12 @@ void Inverter::goOffline(std::uint16_t error_id)
   motion.wentOffline();
   services.resetEnded();
   liveness.heard();
-  // From now on nothing of it is answered, and that is what users are told.
+  // From now on nothing that it is sent is answered, and that is what users see.
   lost_writes.lower();
   forgetDrive(!refused);
 }
 
-/// What was read of it counts no more; after silence another drive may stand there, or it may have been switched off and on.
+/// What was read of it no longer counts; after silence another drive may be there, or it may have been switched off and on.
 void Inverter::forgetDrive(bool after_silence)
 {
   evidence.forget();
@@ -129,7 +129,7 @@ wire::Request Inverter::prepared(wire::Request request) const
 
 bool Inverter::connectDue(TimePoint now) const
 {
-  // Nothing but reads goes to a port of the drive's own before it has told its status (contract, 8.8).
+  // Nothing but reads goes to a port of the drive's own before it has reported its status (contract, 8.8).
   const bool must_wait = config.ownPort() && !link.everKnown() && settings.nextWrites();
   return !link.silent() && pauses.connectAllowed(now) && settings.urgent() && !must_wait;
 }
@@ -200,11 +200,11 @@ void Inverter::parameterWritten(const std::string& name)
   settings.reread(name);
   if (settings.map().has(name))
   {
-    map_use.end("its parameters were changed; that counts after the drive was switched off and on");
+    map_use.end("its parameters were changed; that takes effect after the drive is switched off and on");
   }
   if (block_transfer.isSelectedBy(name))
   {
-    dropBlock("its selection was changed; that counts after the drive was switched off and on");
+    dropBlock("its selection was changed; that takes effect after the drive is switched off and on");
   }
 }
 
@@ -259,7 +259,7 @@ Judgement Inverter::wordsRead(TimePoint now)
   return compare(now, refresh.draft().words(), false);
 }
 
-/// What the drive does with what it was told, and what follows for the parts of this inverter.
+/// What the drive does with its commands, and what follows for the parts of this inverter.
 Judgement Inverter::compare(TimePoint now, const StatusWords& words, bool complete)
 {
   const MotionVerdict verdict =
@@ -288,7 +288,7 @@ void Inverter::cameToRest(TimePoint now)
   interlock.resting();
 }
 
-/// The drive says that it has forgotten what it was told since its last return. Returns the reason to stop it; empty: none.
+/// The drive says that it has forgotten since its last return what it was sent. Returns the reason to stop it; empty: none.
 std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at)
 {
   if (!words.restarted || !settings.connected())
@@ -362,7 +362,7 @@ std::optional<TimePoint> Inverter::serveBy(Duration deadline_margin) const
   }
   const TimePoint fed_at = feeding.needsWrites() ? feeding.fedAt().value_or(*link.lastAnswer()) : *link.lastAnswer();
   const Duration latest = std::min(seconds(toSeconds(*timeout) * TIMEOUT_SHARE), *timeout - deadline_margin);
-  // On a bus that is too full for it a drive is due early, but never always: the others want to be served too.
+  // On a bus that is too full for it a drive is due early, but not all the time: the others must be served too.
   return fed_at + std::max(latest, *timeout / 2);
 }
 }  // namespace bus

@@ -35,7 +35,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// One inverter of the bus: an aggregate of parts, each with a business of its own, and what happens to several of them at
+/// One inverter of the bus: an aggregate of parts, each with its own task, and the events that concern several of them at
 /// once. Not thread safe; the bus guards it.
 class Inverter
 {
@@ -62,7 +62,7 @@ public:
   BlockTransfer block_transfer;
   MapUse map_use;
   CommandError command_error;
-  /// What came since the last complete status.
+  /// What has come since the last complete status.
   LinkRecord record;
   LostWrites lost_writes;
   Liveness liveness;
@@ -88,18 +88,18 @@ public:
   // --- requests -----------------------------------------------------------------------------------------------------
   /// \p request with the time-outs and silences of this inverter.
   wire::Request prepared(wire::Request request) const;
-  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has told its status
+  /// A loop-back may take the place of another request. Not to a port of the drive's own before it has reported its status
   /// (contract, 8.8).
   bool loopbackUsable() const;
   /// A keep-alive may repeat the confirmed command words (contract, 4.1).
   bool mayRepeatWords(TimePoint now) const;
 
   // --- what is settled at connect -----------------------------------------------------------------------------------
-  /// Identity and what the drive must be told are settled before its first status.
+  /// Identity and the sequence `connect` are settled before its first status.
   bool connectDue(TimePoint now) const;
   /// After each exchange for its settings.
   void settled(TimePoint now, const wire::Reply& reply);
-  /// Its parameters may be written: the motor stands, and nobody is about to move it.
+  /// Its parameters may be written: the motor is at rest, and no command is about to move it.
   bool standsStill() const;
   /// The drive takes no block write: direct reads and single writes from now on.
   void dropBlock(const std::string& why);
@@ -107,25 +107,25 @@ public:
   void parameterWritten(const std::string& name);
 
   // --- status -------------------------------------------------------------------------------------------------------
-  /// An exchange ended; a lost one ends all that was proven of RUN.
+  /// An exchange ended; a lost one invalidates all that was proven about RUN.
   void noteExchange(const wire::Reply& reply);
-  /// It was a read of a refresh (that goes on, with \p more): what it shows of RUN.
+  /// It was a read of a refresh (which goes on, with \p more): what it shows about RUN.
   void noteStatus(const wire::Reply& reply, bool more);
-  /// After each read of a refresh that goes on: what concerns safety is not put off until the rest has come, or not come.
+  /// After each read of a refresh that goes on: a matter of safety does not wait until the rest has come or failed to come.
   Judgement wordsRead(TimePoint now);
   /// After a complete refresh.
   Judgement statusComplete(TimePoint now);
-  /// RUN is off at last, as far as anybody can tell: confirmed, or seen off by a read that left at \p now.
+  /// RUN is off at last, as far as is known: confirmed, or seen off by a read that left at \p now.
   void cameToRest(TimePoint now);
 
   // --- answers ------------------------------------------------------------------------------------------------------
-  /// The motor may turn, as far as anybody can tell.
+  /// The motor may turn, as far as is known.
   bool mayRun() const;
   /// What bars velocities as long as it lasts, for the interlock.
   Holds holds() const;
-  /// What stands in the way of a velocity now.
+  /// What is in the way of a velocity now.
   Obstacles obstacles(TimePoint now) const;
-  /// What the scheduler must know of it.
+  /// What the scheduler must know about it.
   InverterView view(TimePoint now, Duration deadline_margin) const;
 
 private:

@@ -21,12 +21,12 @@ public:
   explicit Link(int offline_after);
 
   // --- what happened ------------------------------------------------------------------------------------------------
-  /// An exchange has ended, in whatever way.
+  /// An exchange has ended, no matter how.
   void exchangeEnded(const wire::Reply& reply);
-  /// A valid reply came, of whatever kind. It makes an offline inverter worth a trial, and no more: it is back with a
+  /// A valid reply came, of any kind. It makes an offline inverter worth a trial, and no more: it is back with a
   /// complete status only (contract, 8.15).
   void answered(const wire::Reply& reply);
-  /// The reply told something of the status.
+  /// The reply brought something of the status.
   void dataRead();
   /// An exchange failed with \p error_id; shown until another one is answered.
   void failed(std::uint16_t error_id);
@@ -63,7 +63,7 @@ public:
   bool sendsData() const;
   /// Why it is offline, or how the last exchange failed; 0: it did not.
   std::uint16_t error() const;
-  /// By which a gateway said that the drive had not answered the last exchange; 0: it did not.
+  /// Exception by which a gateway said that the drive had not answered the last exchange; 0: it did not.
   std::uint8_t gatewayCode() const;
   /// Nothing: it has never answered.
   const std::optional<TimePoint>& lastAnswer() const;

@@ -29,7 +29,7 @@ std::uint64_t total(const std::map<std::uint16_t, std::uint64_t>& counts)
 
 std::string gatewayText(std::uint8_t code)
 {
-  return "without a reply, says the gateway (exception " + util::hexText(code, 2) + "H)";
+  return "without a reply, as the gateway reports (exception " + util::hexText(code, 2) + "H)";
 }
 
 std::string exceptionText(const drive::Drive& drive, std::uint16_t error_id)
@@ -91,7 +91,7 @@ std::string LinkRecord::text(const drive::Drive& drive) const
   {
     parts.emplace_back(entry.second, exceptionText(drive, entry.first));
   }
-  parts.emplace_back(answered_, "answered, but no complete status came of it");
+  parts.emplace_back(answered_, "answered without a complete status");
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.first > b.first; });
   std::string text;
   for (std::size_t index = 0; index < std::min(parts.size(), MOST_PARTS) && parts[index].first > 0; ++index)
@@ -109,10 +109,11 @@ std::string LinkRecord::advice() const
   {
     return late_ > 0 ? "raise response_timeout"
                      : "check supply, wiring, station number and serial settings; if it answers when it is alone, it "
-                       "wants silence before a request (timing: quiet_before)";
+                       "needs silence before a request (timing: quiet_before)";
   }
-  return damaged_ == most ? "check baud rate, parity, stop bits, termination, and whether the station stands twice"
-                          : "check that this drive is the one of the profile, and what it refuses";
+  return damaged_ == most
+             ? "check baud rate, parity, stop bits, termination, and whether two drives have this station number"
+             : "check that this drive is the one of the profile, and what it refuses";
 }
 
 std::uint64_t LinkRecord::lost() const

@@ -14,7 +14,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What came in place of a status since the last complete one: for people who look for the reason. No time, no decisions.
+/// What came in place of a status since the last complete one: for people looking for the cause. No time, no decisions.
 class LinkRecord
 {
 public:

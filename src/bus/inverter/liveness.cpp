@@ -15,7 +15,7 @@ namespace
 // Contract, 8.15.
 constexpr double SHORTEST_PATIENCE_S = 2.0;
 constexpr int PERIODS_OF_PATIENCE = 3;
-// A single one may be the line's, and the next turn far away.
+// A single one may be due to the line, and the next turn far away.
 constexpr unsigned MISSES_OF_ITS_OWN = 2;
 constexpr std::uint16_t MODBUS_EXCEPTIONS = 0x8000;
 

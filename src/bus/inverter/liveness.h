@@ -15,13 +15,13 @@ namespace inverter_bus
 namespace bus
 {
 /// Whether an inverter is alive: alive means data (contract, 8.15). Too many failures in a row, or no complete status for
-/// too long, make it offline; what answers without telling its status (a loop-back, an acknowledged write, a late reply) is
-/// no reason to show it as alive. Pure: time comes in as an argument. Not thread safe.
+/// too long, make it offline; a drive that answers without reporting its status (a loop-back, an acknowledged write, a
+/// late reply) is not shown as alive for that. Pure: time comes in as an argument. Not thread safe.
 class Liveness
 {
 public:
-  /// \p offline_after failures in a row (bus parameter `offline_after`). \p shortest_silence the same in time, where replies
-  /// were not waited for in full.
+  /// \p offline_after failures in a row (bus parameter `offline_after`). \p shortest_silence the same in time, where
+  /// replies were not waited for in full.
   explicit Liveness(int offline_after, Duration shortest_silence = Duration{ 0 });
 
   // --- failures in a row ----------------------------------------------------------------------------------------------
@@ -30,13 +30,13 @@ public:
   bool lost(bool write);
   /// One of them that was sent at \p sent_at has not had its full time (contract, 8.4).
   void waitedBriefly(TimePoint sent_at);
-  /// Short waits are behind it that the row has become long: it is no silence yet for which an inverter goes offline.
+  /// The row has become long through short waits: this is not yet a silence for which an inverter goes offline.
   bool tooSoon(TimePoint now) const;
   /// A read of the run words was answered by an exception; counts like a lost exchange.
   bool refused();
   /// A read brought data of the status: the row is over.
   void dataRead();
-  /// Only writes were lost, but so many that a read has to tell whether the drive is away.
+  /// Only writes were lost, but so many that a read must show whether the drive is away.
   bool needsRead() const;
 
   // --- the age of the status ------------------------------------------------------------------------------------------
@@ -48,24 +48,25 @@ public:
   void heard();
   /// It is expected to be deaf, and has not been heard meanwhile.
   bool mayBeDeaf(TimePoint now) const;
-  /// Until \p now this node itself did not run, for \p duration: nobody asked for a status, so none was to be expected.
+  /// Until \p now this node itself did not run, for \p duration: no status was asked for, so none was to be expected.
   void notWatching(TimePoint now, Duration duration);
   void complete(TimePoint now);
   /// An exchange that is no read of a refresh was lost; see noteRead() for those.
   void missed(std::uint16_t error_id);
-  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked more than once and did not tell: who was not
-  /// asked, because others took the time, is not to blame, nor is who lost one exchange and was not asked since. \p period is the longest time between two refreshes of this inverter as the
-  /// configuration has it, with what a gateway adds.
+  /// No complete status for `max(2 s, 3 refresh periods)`, although it was asked more than once and did not report it: an
+  /// inverter that was not asked, because others took the time, is not to blame, nor is one that lost one exchange and
+  /// was not asked since. \p period is the longest time between two refreshes of this inverter as the configuration has
+  /// it, with what a gateway adds.
   bool overdue(TimePoint now, Duration period) const;
 
   // --- what has become of its reads -----------------------------------------------------------------------------------
-  /// Each read of a refresh. \p length is what tells a long reply from a short one: its cost on the line.
+  /// Each read of a refresh. \p length distinguishes a long reply from a short one: its cost on the line.
   void noteRead(Duration length, const wire::Reply& reply);
   /// Why no status comes, in words, from the reads since the last complete one: "answers exception 02 to the status",
   /// "damaged long replies: 221 of 369", "no long replies: 4 of 9"; empty: nothing to say beyond that no reply came.
   std::string reason() const;
-  /// Since the last complete status the drive has answered every read, and refuses for the moment (Modbus exceptions above 03:
-  /// busy, locked, running).
+  /// Since the last complete status the drive has answered every read, and refuses for the moment (Modbus exceptions
+  /// above 03: busy, locked, running).
   bool refusesForTheMoment() const;
   /// Error id of the last exchange that failed since the last complete status; 0: none has.
   std::uint16_t lastError() const;

@@ -10,7 +10,7 @@ namespace inverter_bus
 namespace bus
 {
 /// Whether the drive really has the loop-back that its profile promises. One that answers it with an exception does not,
-/// nor does one that is silent on it time and again but answers other requests. Not thread safe; the bus guards it.
+/// nor does one that repeatedly leaves it unanswered but answers other requests. Not thread safe; the bus guards it.
 class LoopbackKnowledge
 {
 public:
@@ -20,7 +20,7 @@ public:
 
   /// How a loop-back ended.
   void note(wire::Outcome outcome);
-  /// Another request was answered: only now does a loop-back that was not answered say something about the loop-back.
+  /// Another request was answered: only now does an unanswered loop-back count against the loop-back.
   void otherAnswered();
   /// The drive has come back: it may be another one.
   void tryAgain();
@@ -37,7 +37,7 @@ private:
   bool works_ = false;
   bool refused_ = false;
   unsigned misses_ = 0;
-  /// Counted already: a drive that is silent on everything misses once.
+  /// Counted already: a drive that answers nothing at all misses once.
   bool missed_ = false;
 };
 }  // namespace bus

@@ -9,7 +9,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Writes of command words that one inverter has not answered (contract, 8.1). They are counted for themselves: a drive
+/// Writes of command words that one inverter has not answered (contract, 8.1). They are counted separately: a drive
 /// that answers every read and loses every write is not offline, but it can't be commanded either. Pure; not thread safe.
 class LostWrites
 {
@@ -36,7 +36,7 @@ public:
   void raise();
   void lower();
   bool raised() const;
-  /// Since when, for users: what is lost and what is not.
+  /// For users: what is lost and what is not.
   std::string text() const;
   /// Lost command writes since the last acknowledged one.
   int inARow() const;

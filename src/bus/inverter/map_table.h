@@ -16,15 +16,15 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the drive has in the parameters of its register map (contract, 8.17), read in a few exchanges after each connect. It
-/// says what the drive will do from its next power-on, not what it does now. Pure. Not thread safe; the bus guards it.
+/// What the drive has in the parameters of its register map (contract, 8.17), read in a few exchanges after each connect.
+/// It says what the drive will do from its next power-on, not what it does now. Pure. Not thread safe; the bus guards it.
 class MapTable
 {
 public:
-  /// \p wanted: somebody wants the map; else nothing is read. \p drive must outlive it.
+  /// \p wanted: the map is to be used; otherwise nothing is read. \p drive must outlive it.
   MapTable(const drive::Drive& drive, bool wanted);
 
-  /// All is read anew.
+  /// All is read again.
   void restart();
   /// Null: nothing is left to read.
   const drive::ReadBlock* next() const;

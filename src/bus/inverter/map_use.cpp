@@ -53,7 +53,7 @@ void MapUse::note(const MapOutcome& outcome)
       proven_[outcome.run ? 1 : 0] = true;
       break;
     case MapOutcome::Verdict::Unlike:
-      end("its words are not those of plain reads, so that it is not in effect: switch the drive off and on");
+      end("its words are not those of plain reads, so it is not in effect: switch the drive off and on");
       break;
     case MapOutcome::Verdict::Refused:
       end("the drive refuses the read: switch it off and on, or set P200 = 0");
@@ -104,7 +104,7 @@ std::string MapUse::takeRefusal(const MapTable& table)
   }
   refusal_told_ = true;
   return "configure_map: nothing is written, since the drive's register map is in other use: it has " + table.text() +
-         "; wanted is " + table.wantedText();
+         "; wanted: " + table.wantedText();
 }
 
 bool MapUse::inUse() const
@@ -121,7 +121,7 @@ std::string MapUse::whyNot(const MapTable& table) const
   const std::string text = "the register map is not used: ";
   if (table.refused())
   {
-    return text + "the drive does not tell its parameters, and may have none";
+    return text + "the drive refuses to read out the map's parameters, and may have no map";
   }
   if (!table.known())
   {
@@ -134,7 +134,7 @@ std::string MapUse::whyNot(const MapTable& table) const
   if (!table.fits())
   {
     return text + "the drive has " + table.text() + " instead of " + table.wantedText() +
-           (config_.configure_map ? "; it is written while the motor stands"
+           (config_.configure_map ? "; it is written while the motor is at rest"
                                   : "; set the drive, or configure_map: true");
   }
   if (!read_)

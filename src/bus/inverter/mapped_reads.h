@@ -12,12 +12,13 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What a refresh may do with the drive's register map, as it was told when it began.
+/// What a refresh may do with the drive's register map, as ordered when it began.
 struct MapOrders
 {
   /// The read that takes the place of what it brings; empty: plain reads.
   std::optional<drive::ReadBlock> read;
-  /// RUN stands in the words of \ref read as it stood when they were proven; empty: they were proven with RUN on and off.
+  /// RUN has the same value in the words of \ref read as when they were proven; empty: they were proven with RUN on and
+  /// off.
   std::optional<bool> proven_with_run;
   /// Mapped words are compared with plain ones in this refresh: the mapped read, and the plain one that is made after it.
   std::vector<drive::ReadBlock> proof;
@@ -32,7 +33,8 @@ struct MapOutcome
     Open,
     Equal,
     Unlike,
-    /// The read in use contradicts itself: the frequency, which is no mapped word, and the bit that tells whether the motor turns.
+    /// The read in use contradicts itself: the frequency, which is no mapped word, and the bit that shows whether the
+    /// motor turns.
     Doubtful,
     /// The drive refused the read.
     Refused
@@ -42,8 +44,8 @@ struct MapOutcome
   bool run = false;
 };
 
-/// The reads through a drive's register map during a refresh, and whether they bring what plain reads bring. Pure. Not thread
-/// safe; the bus guards it.
+/// The reads through a drive's register map during a refresh, and whether they bring what plain reads bring. Pure. Not
+/// thread safe; the bus guards it.
 class MappedReads
 {
 public:
@@ -51,10 +53,10 @@ public:
   bool take(const MapOrders& given);
   const MapOrders& orders() const;
 
-  /// A read of the proof was answered: \p mapped or the plain one after it. \p before is what plain reads of the same refresh
-  /// brought before.
+  /// A read of the proof was answered: \p mapped or the plain one after it. \p before is what plain reads of the same
+  /// refresh brought before.
   void compare(bool mapped, const drive::Monitor& values, const drive::Monitor& before);
-  /// \p values came with the read in use. False: RUN stands there as it was never proven, or they contradict themselves; they
+  /// \p values came with the read in use. False: their value of RUN was never proven, or they contradict themselves; they
   /// must not be used.
   bool accepts(const drive::Monitor& values);
   /// The drive refused the mapped read.

@@ -9,7 +9,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Adds what \p from knows to \p to.
+/// Adds the values that \p from has to \p to.
 void mergeMonitor(const drive::Monitor& from, drive::Monitor& to);
 }  // namespace bus
 }  // namespace inverter_bus

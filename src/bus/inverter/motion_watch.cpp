@@ -13,7 +13,7 @@ namespace
 {
 // At reversal a drive may show "stopped" for a moment: only a longer one means that it lost its RUN.
 constexpr double OPERATION_LOST_S = 0.5;
-// Below this a drive may legitimately stand still with RUN on (start frequency).
+// Below this a drive may legitimately be at rest with RUN on (start frequency).
 constexpr double LOWEST_JUDGED_HZ = 1.0;
 constexpr double MOVEMENT_PATIENCE_S = 3.0;
 constexpr double DEVIATION_PATIENCE_S = 2.0;
@@ -28,7 +28,7 @@ void watch(std::optional<TimePoint>& since, bool condition, TimePoint now)
   since = condition ? since.value_or(now) : std::optional<TimePoint>();
 }
 
-/// Words that were asked for before our last change of RUN say nothing about it.
+/// Words requested before this node last changed RUN say nothing about it.
 bool isEvidence(const Observation& seen)
 {
   return seen.sent_at >= seen.movement.runChangedAt();
@@ -57,7 +57,7 @@ MotionVerdict MotionWatch::judge(const Observation& seen)
 void MotionWatch::judgeTrip(const Observation& seen, MotionVerdict& verdict)
 {
   Judgement& judgement = verdict.judgement;
-  // A status that can't tell of a trip does not end one.
+  // A status that can't show a trip does not end one.
   const bool tripped = seen.words.tripped().value_or(seen.complete && seen.faulted);
   const bool is_new = tripped && !seen.faulted;
   if (!seen.complete)
@@ -99,7 +99,7 @@ void MotionWatch::judgeRunSeen(const Observation& seen, MotionVerdict& verdict)
   Judgement& judgement = verdict.judgement;
   if (seen.movement.runConfirmed() && !run_seen)
   {
-    judgement.stop_reason = "the drive lost its RUN without a stop of ours (switched off and on, or reset)";
+    judgement.stop_reason = "the drive lost its RUN without a stop from this node (switched off and on, or reset)";
   }
   judgement.zero_failed = seen.movement.zeroUnverified() && run_seen;
   verdict.came_to_rest = seen.movement.zeroUnverified() && !run_seen;
@@ -138,7 +138,7 @@ void MotionWatch::judgeOperation(const Observation& seen, MotionVerdict& verdict
   verdict.told_after_turn = movement.turnLostAt() && seen.sent_at > *movement.turnLostAt();
   if (verdict.told_after_turn && !*operation)
   {
-    verdict.judgement.stop_reason = "the drive stopped while it was to turn round (switched off and on?)";
+    verdict.judgement.stop_reason = "the drive stopped while it was to reverse (switched off and on?)";
   }
   operation_seen_ = operation_seen_ || *operation;
   const bool lost = operation_seen_ && !*operation && movement.runConfirmed() &&
@@ -146,12 +146,12 @@ void MotionWatch::judgeOperation(const Observation& seen, MotionVerdict& verdict
   watch(operation_off_since_, lost, seen.now);
   if (lasts(operation_off_since_, seen.now, OPERATION_LOST_S))
   {
-    verdict.judgement.stop_reason = "the drive stopped without a stop of ours (STOP key, terminal or safe stop)";
+    verdict.judgement.stop_reason = "the drive stopped without a stop from this node (STOP key, terminal or safe stop)";
     operation_seen_ = false;
   }
 }
 
-/// No RUN of ours is on. A motor that runs out after our stop is no surprise; one that starts from rest is.
+/// No RUN from this node is on. A motor that coasts down after its stop is no surprise; one that starts from rest is.
 void MotionWatch::judgeUncommanded(const Observation& seen, bool operation, MotionVerdict& verdict)
 {
   operation_seen_ = false;
@@ -215,7 +215,8 @@ std::vector<std::string> MotionWatch::warnings(TimePoint now) const
   }
   if (lasts(idle_since_, now, MOVEMENT_PATIENCE_S))
   {
-    warnings.emplace_back("does not move although RUN is on; check the enable inputs and who may command the drive");
+    warnings.emplace_back(
+        "does not move although RUN is on; check the enable inputs and which source may command the drive");
   }
   if (lasts(wrong_direction_since_, now, MOVEMENT_PATIENCE_S))
   {
@@ -224,7 +225,7 @@ std::vector<std::string> MotionWatch::warnings(TimePoint now) const
   if (lasts(deviates_since_, now, DEVIATION_PATIENCE_S))
   {
     warnings.emplace_back(
-        "runs at another speed than commanded; check for a takeover at the panel and the drive's frequency limits");
+        "runs at a speed other than commanded; check for a takeover at the panel and the drive's frequency limits");
   }
   return warnings;
 }

@@ -18,7 +18,7 @@ struct Judgement
 {
   /// Stop the inverter and lock it; empty: no reason to.
   std::string stop_reason;
-  /// RUN is on although a command of 0 took it off: insist, without a lock.
+  /// RUN is on although a command of 0 took it off: keep stopping it, without a lock.
   bool zero_failed = false;
   /// The trip is new; its reason in words.
   bool tripped = false;
@@ -48,25 +48,25 @@ struct MotionVerdict
   std::optional<bool> faulted;
   /// RUN was seen off after a command of 0.
   bool came_to_rest = false;
-  /// The drive has told how it is after the frame that was to turn it round got lost.
+  /// The drive has reported its state after the frame that was to reverse it got lost.
   bool told_after_turn = false;
 };
 
-/// Compares what the drive does with what it was told (contract, 4.1, 4.7 and 4.8): trips, a lost or a leftover RUN, a motor
+/// Compares what the drive does with its commands (contract, 4.1, 4.7 and 4.8): trips, a lost or a leftover RUN, a motor
 /// that runs or stops by itself, in the wrong direction or at another speed. It remembers what it has seen and changes
-/// nothing else: who asks acts on the verdict. Pure: time comes in as an argument. Not thread safe; the bus guards it.
+/// nothing else: the caller acts on the verdict. Pure: time comes in as an argument. Not thread safe; the bus guards it.
 class MotionWatch
 {
 public:
   /// Both must outlive it.
   MotionWatch(const drive::Drive& drive, const InverterConfig& config);
 
-  /// After each read of a refresh that goes on, and after the last one of a complete status: what concerns safety is not put
-  /// off until the rest has come, or not come.
+  /// After each read of a refresh that goes on, and after the last one of a complete status: a matter of safety does not
+  /// wait until the rest has come or failed to come.
   MotionVerdict judge(const Observation& seen);
-  /// The inverter went offline: nobody sees any more how it moves.
+  /// The inverter went offline: its motion can no longer be seen.
   void wentOffline();
-  /// What was read of the drive counts no more: the next status is the first one.
+  /// What was read of the drive no longer counts: the next status is the first one.
   void forget();
 
   /// What users are to look for, a sentence each.
@@ -93,7 +93,7 @@ private:
   bool unexpected_motion_ = false;
   /// Whether a RUN of the bus was left on from before has been seen.
   bool leftover_judged_ = false;
-  /// A trip was acted on before the status was complete that tells its code.
+  /// A trip was acted on before the status with its code was complete.
   bool early_trip_ = false;
 };
 }  // namespace bus

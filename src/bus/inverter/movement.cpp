@@ -87,7 +87,7 @@ void Movement::aim(const Target& target)
 {
   frequencies_told_ = active_ ? frequencies_told_ : 0;
   target_ = target;
-  // A second 0 leaves the question open whether the first one has taken RUN off.
+  // A second 0 leaves open whether the first one has taken RUN off.
   zero_unverified_ = target.zero && zero_unverified_;
   active_ = next().has_value();
   if (target.zero && !active_)
@@ -279,8 +279,8 @@ void Movement::doubtful(const Write& write, TimePoint now)
   words.emplace_back(write.point, write.raw);
   for (const drive::Word& word : words)
   {
-    // Sending has taken out what the frame was to change; what is left was in force before, and must not be sent anew
-    // because of a lost frame: that would give back a RUN which the drive has lost.
+    // Sending has taken out what the frame was to change; what is left was in force before, and must not be sent again
+    // because of a lost frame: that would restore a RUN that the drive has lost.
     if (!isConfirmed(word))
     {
       words_.erase(word.first);

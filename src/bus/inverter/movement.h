@@ -31,7 +31,7 @@ struct Target
   double velocity = 0.0;
 };
 
-/// A velocity that was judged: a target, or the reason why not.
+/// A velocity that was judged: a target, or the reason for the refusal.
 struct JudgedVelocity
 {
   std::uint16_t error_id = 0;
@@ -49,7 +49,7 @@ struct Write
   wire::Request request;
   /// Puts RUN on: from its first byte on the motor counts as running.
   bool starts = false;
-  /// With it all of the target is told: what a newer one wants after it is a command of its own.
+  /// It completes the target: what a newer target asks for after it is a command of its own.
   bool last = false;
 };
 
@@ -83,12 +83,12 @@ public:
   std::vector<drive::Word> wordsInForce() const;
   void sent(const Write& write);
   void confirmed(const Write& write, TimePoint now);
-  /// No valid answer: nobody knows whether the drive took it.
+  /// No valid answer: it is unknown whether the drive took it.
   void doubtful(const Write& write, TimePoint now = TimePoint());
-  /// The command failed: nothing more is sent for it. A motor that runs goes on as it was.
+  /// The command failed: nothing more is sent for it. A motor that runs goes on as before.
   void giveUp();
 
-  /// The drive has confirmed that RUN is off. The next start writes everything anew: a drive that was switched off
+  /// The drive has confirmed that RUN is off. The next start writes everything again: a drive that was switched off
   /// meanwhile has forgotten its set-point.
   void stopped(TimePoint now);
   /// A stop frame was acknowledged, but RUN has not been seen off yet.
@@ -100,11 +100,11 @@ public:
   bool runPossible() const;
   /// RUN was acknowledged and is in force.
   bool runConfirmed() const;
-  /// When the frame that was to turn a running motor round got lost; nothing: none did, or the motor was seen running
+  /// When the frame that was to reverse a running motor got lost; nothing: none did, or the motor was seen running
   /// since. Until then RUN is not sent again: a drive that was switched off meanwhile would start by it.
   std::optional<TimePoint> turnLostAt() const;
   void seenRunning();
-  /// When RUN was last changed by us; evidence from requests before it says nothing about it.
+  /// When this node last changed RUN; evidence from requests before that says nothing about it.
   TimePoint runChangedAt() const;
   /// A command of 0 was acknowledged: the next status decides whether RUN is off.
   bool zeroUnverified() const;

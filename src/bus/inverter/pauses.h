@@ -27,7 +27,7 @@ public:
   /// An exchange for its settings has ended. \p failed: not at once again, since the status is worth more. \p refused_for:
   /// all that is left was refused for the moment (see DriveSettings::pauseBeforeNext()).
   void settingEnded(TimePoint now, bool failed, Duration refused_for);
-  /// Another drive may be there: what is settled at connect waits for nothing.
+  /// Another drive may be there: what is settled at connect does not wait.
   void forget();
 
   /// What is settled at connect may be asked.

@@ -13,13 +13,13 @@ constexpr double LEFT_OUT_S = 30.0;
 constexpr double POSTPONED_S = 0.5;
 constexpr std::uint8_t NO_SUCH_ADDRESS = 0x02;
 
-/// Some number in the read is none of the drive's, and never will be.
+/// The drive does not have some number in the read, and never will.
 bool isHole(const wire::Reply& reply)
 {
   return reply.pdu.size() > 1 && reply.pdu[1] == NO_SUCH_ADDRESS;
 }
 
-/// The drive's warning word has a reason to be another one.
+/// There is reason to expect that the drive's warning word has changed.
 bool warns(const drive::Monitor& before, const drive::Monitor& now)
 {
   const auto changed = [](const std::optional<bool>& one, const std::optional<bool>& other) {
@@ -140,7 +140,7 @@ bool Refresh::advance()
   }
   if (!draft_.suffices(reads_.tellRun()))
   {
-    // Every read was refused, or every one that tells whether the motor runs: that is no status.
+    // Every read was refused, or every one that shows whether the motor runs: that is no status.
     return false;
   }
   if (warns(last_.words.monitor, draft_.words().monitor))
@@ -224,7 +224,8 @@ bool Refresh::refused(const wire::Reply& reply)
     plan_.clear();
     return true;
   }
-  // A value that the drive refuses is not asked for for a while, unless it was the last one that tells whether the motor runs.
+  // A value that the drive refuses is not asked for for a while, unless it was the last one that shows whether the motor
+  // runs.
   StatusRead& read = reads_[plan_.front()];
   read.values = drive::Monitor();
   if (read.tellsRun() && !reads_.othersTellRun(plan_.front(), reply.finished_at))
@@ -244,7 +245,8 @@ bool Refresh::skipSlow()
   return read.kind == StatusRead::Kind::Slow && !slow_.waitedFor(read) && !last && postpone();
 }
 
-/// The read at hand is not to be had now. Without a slow one the refresh goes on, without a fast one it has no result.
+/// The current read fails for now. If it is a slow one, the refresh goes on; if it is a fast one, the refresh has no
+/// result.
 bool Refresh::postpone()
 {
   StatusRead& read = reads_[plan_.front()];
@@ -260,7 +262,7 @@ bool Refresh::postpone()
 
 void Refresh::failed()
 {
-  // A slow read that gets lost must not stand before the run words of the next refresh again.
+  // A slow read that got lost must not come before the run words of the next refresh again.
   if (!plan_.empty() && asked().kind == StatusRead::Kind::Slow)
   {
     reads_[plan_.front()].left_out_until = asked_at_ + seconds(POSTPONED_S);

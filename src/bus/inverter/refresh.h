@@ -18,7 +18,8 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// The status refresh of one inverter: which read is next, and what the drive has said so far with the time of each word.
+/// The status refresh of one inverter: which read is next, and what the drive has reported so far, with the time of each
+/// word.
 ///
 /// Each refresh reads all fast blocks, the fault blocks while the drive is tripped, and the slow block whose turn it is.
 /// Values belong to the stamp only if they came in one refresh; slow ones have an age of their own (contract, section 2 and
@@ -43,10 +44,10 @@ public:
 
   /// The read that is due; starts a new refresh when none is under way, with what \p leave allows of slow values.
   const drive::ReadBlock& next(TimePoint now, const SlowLeave& leave = SlowLeave());
-  /// That read, until its end is told.
+  /// That read, until its end is reported.
   const StatusRead& asked() const;
 
-  /// The drive has just refused a read of its run words that can't be had in another form; true once.
+  /// The drive has just refused a read of its run words that can't be made in another form; true once.
   bool takeRefusal();
 
   /// The answer to next(). Returns true when the refresh needs another exchange.
@@ -72,7 +73,7 @@ public:
   SlowTurns& slow();
   /// Of the last complete refresh; empty: none since the program began.
   const std::optional<TimePoint>& stamp() const;
-  /// Nothing that was read counts any more (inverter offline).
+  /// Nothing that was read counts any longer (inverter offline).
   void forget();
   /// All of one refresh, for costs.
   const StatusReads& reads() const;

@@ -12,7 +12,7 @@ Repeats::Repeats(int most) : most_(most)
 
 bool Repeats::again(const wire::Reply& reply)
 {
-  // A gateway that says that the drive is silent has tried itself.
+  // A gateway that reports the drive as silent has tried by itself.
   const bool lost = !isAnswered(reply) && reply.gateway_code == 0;
   used_ = lost && used_ < most_ ? used_ + 1 : 0;
   return used_ > 0;

@@ -16,7 +16,7 @@ public:
   /// \p most for each request (bus parameter `retries`).
   explicit Repeats(int most);
 
-  /// A request has ended: true if it was lost or damaged and is to be sent again. Otherwise the next one begins anew.
+  /// A request has ended: true if it was lost or damaged and is to be sent again. Otherwise the next one starts afresh.
   bool again(const wire::Reply& reply);
   /// The next request is another one.
   void restart();

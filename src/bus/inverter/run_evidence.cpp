@@ -11,7 +11,7 @@ namespace bus
 {
 namespace
 {
-// A drive that was switched off and on is deaf for a second: within half of that it can't have lost our RUN unseen.
+// A drive that was switched off and on is deaf for a second: within half of that it can't have lost its RUN unnoticed.
 constexpr double LASTS_S = 0.5;
 constexpr double SOURCE_PERIOD_S = 5.0;
 }  // namespace
@@ -40,7 +40,7 @@ void RunEvidence::statusRead(const drive::Monitor& words, const wire::Reply& rep
   }
 }
 
-/// The motor turns as we want it, or is on its way there: not on its way to rest after a RUN that the drive has lost.
+/// The motor turns as commanded, or is on its way there: not on its way to rest after a RUN that the drive has lost.
 bool RunEvidence::followsTarget(const drive::Monitor& words, const Movement& movement)
 {
   const auto& target = movement.target();

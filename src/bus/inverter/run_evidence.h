@@ -12,7 +12,7 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the drive's marker of a restart means for a RUN of ours.
+/// What the drive's marker of a restart means for a RUN from this node.
 enum class Restart
 {
   None,
@@ -21,29 +21,30 @@ enum class Restart
   Restarted
 };
 
-/// What shows that our RUN is in force (contract, 4.1): confirmed words may be repeated only while the last exchange did,
-/// since a drive that was switched off and on meanwhile would start by them. Pure: time and the movement come in as
-/// arguments. Not thread safe; the bus guards it.
+/// What shows that this node's RUN is in force (contract, 4.1): confirmed words may be repeated only while the last
+/// exchange did, since a drive that was switched off and on meanwhile would start by them. Pure: time and the movement
+/// come in as arguments. Not thread safe; the bus guards it.
 class RunEvidence
 {
 public:
   /// \p drive must outlive it.
   explicit RunEvidence(const drive::Drive& drive);
 
-  /// An exchange with the drive has ended: what the one before it showed counts no more, and a lost or refused one ends all
-  /// that was proven.
+  /// An exchange with the drive has ended: what the one before it showed no longer counts, and a lost or refused one
+  /// invalidates all that was proven.
   void exchangeEnded(wire::Outcome outcome);
-  /// \p reply answered a read of the status; \p words is what the refresh has told so far.
+  /// \p reply answered a read of the status; \p words is what the refresh has brought so far.
   void statusRead(const drive::Monitor& words, const wire::Reply& reply, const Movement& movement);
   /// The marker of a restart was read by a request that left at \p sent_at. With \p stop_pending no RUN is to go on.
   Restart restartRead(bool restarted, TimePoint sent_at, const Movement& movement, bool stop_pending);
-  /// Nothing that was read of the drive counts any more.
+  /// Nothing that was read of the drive counts any longer.
   void forget();
 
-  /// The last exchange has shown that the motor follows our RUN, and so lately that the drive can't have lost it since.
+  /// The last exchange has shown that the motor follows this node's RUN, so recently that the drive can't have lost it
+  /// since.
   bool shows(TimePoint now, const Movement& movement) const;
-  /// Who commands the drive is to be read again, since a panel or a terminal may take it over at any time. True once in 5 s
-  /// while a RUN of ours is in force, or once in \p period where that is longer (contract, 8.3).
+  /// What commands the drive is to be read again, since a panel or a terminal may take it over at any time. True once in
+  /// 5 s while a RUN from this node is in force, or once in \p period where that is longer (contract, 8.3).
   bool takeSourceDue(TimePoint now, const Movement& movement, Duration period);
 
 private:
@@ -51,7 +52,7 @@ private:
 
   const drive::Drive& drive_;
   std::optional<TimePoint> shown_at_;
-  /// The drive's own copy of our RUN command was read as on since the last lost exchange.
+  /// The drive's own copy of the RUN command was read as on since the last lost exchange.
   bool proven_ = false;
   /// By then the drive had not restarted.
   TimePoint no_restart_until_;

@@ -9,8 +9,8 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What services have under way in one drive, and how often this node has worn its memory. Not thread safe; the bus guards
-/// it.
+/// What services have under way in one drive, and how often this node has written its EEPROM. Not thread safe; the bus
+/// guards it.
 class ServiceState
 {
 public:

@@ -23,7 +23,7 @@ struct BlockSlots
 
 /// Ratings as read from the drive.
 drive::Ratings ratingsOf(const drive::Drive& drive, const SettingList& settings);
-/// Selections of the block read and write; empty before all are known, or where the drive refuses to tell.
+/// Selections of the block read and write; empty before all are known, or where the drive refuses the read.
 std::optional<BlockSlots> blockSlotsOf(const drive::Drive& drive, const SettingList& settings);
 /// The drive's own communication time-out, as read or assumed; nothing: none, or not known yet.
 std::optional<Duration> driveTimeoutOf(const drive::Drive& drive, const SettingList& settings);

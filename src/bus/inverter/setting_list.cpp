@@ -11,8 +11,8 @@ namespace bus
 {
 namespace
 {
-// A setting that the drive could not tell just now (exception 04H, 06H, response code 2203) is asked for again, since what
-// it says may decide over safety; to one that never can it costs nothing worth speaking of.
+// A setting that the drive could not report just now (exception 04H, 06H, response code 2203) is asked for again, since
+// safety may depend on it; for one that the drive can never report, that costs next to nothing.
 constexpr double FIRST_PAUSE_S = 1.0;
 constexpr unsigned MOST_DOUBLINGS = 6;
 }  // namespace
@@ -94,7 +94,7 @@ bool SettingList::due(const Setting& setting) const
 
 const Setting* SettingList::next() const
 {
-  // One that the drive could not tell just now lets the others go first, one that repeats those that were not told yet.
+  // A setting that the drive could not report just now lets the others go first; a repeated one, those not reported yet.
   const auto found =
       std::min_element(settings_.begin(), settings_.end(), [this](const Setting& one, const Setting& other) {
         const auto claim = [this](const Setting& setting) {

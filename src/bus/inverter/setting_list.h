@@ -28,38 +28,38 @@ struct Setting
   drive::Parameter parameter;
   /// Read before the first status.
   bool urgent = false;
-  /// Read only while a command of ours is in force.
+  /// Read only while a command of this node is in force.
   bool when_commanded = false;
   Told told = Told::NotYet;
-  /// Known, but to be read anew.
+  /// Known, but to be read again.
   bool again = false;
-  /// In a row, each of them of the moment.
+  /// In a row, each of them temporary.
   unsigned refusals = 0;
   std::uint32_t raw = 0;
   double value = 0.0;
 };
 
-/// The drive's own settings that decide over safety, and which of them is read next: those that tell what it is before all
-/// others; one that the drive could not tell just now lets the others go first. Pure. Not thread safe; the bus guards it.
+/// The drive's own settings that decide safety, and which of them is read next: those that identify the drive before all
+/// others; one that the drive could not report just now lets the others go first. Pure. Not thread safe; the bus guards it.
 class SettingList
 {
 public:
   /// Those that the profile names and the drive has. \p drive must outlive it.
   explicit SettingList(const drive::Drive& drive);
 
-  /// All are read anew (the drive has come back).
+  /// All are read again (the drive has come back).
   void restart();
-  /// This one is: it was written through the node.
+  /// This one is read again: it was written through the node.
   void reread(const std::string& parameter);
-  /// A command of ours is in force: who commands the drive can be seen only now. Again: it is looked at anew.
+  /// A command of this node is in force: only now can it be seen what commands the drive. Calling it again re-reads it.
   void commanded();
-  /// A stop of ours was confirmed: what was seen under command counts no more.
+  /// A stop from this node was confirmed: what was seen under command no longer counts.
   void released();
   bool underCommand() const;
 
   /// The next one to be read; null: none.
   const Setting* next() const;
-  /// It was told before, or refused for the moment.
+  /// It was reported before, or refused for the moment.
   bool nextRepeats() const;
   /// The answer to it.
   void done(const wire::Reply& reply);

@@ -81,7 +81,7 @@ std::vector<std::pair<std::string, std::string>> settingValues(const drive::Driv
     }
     else if (setting.told == Told::Refused)
     {
-      text = "the drive refuses to tell";
+      text = "the drive refuses the read";
     }
     const std::string title = setting.parameter.title.empty() ? "" : " (" + setting.parameter.title + ")";
     values.emplace_back(setting.parameter.name + title, text);

@@ -13,9 +13,9 @@ namespace inverter_bus
 {
 namespace bus
 {
-// What users are told of the drive's settings. Pure.
+// What users see of the drive's settings. Pure.
 
-/// WARN lines that say what to set: who commands the drive, what it does when the bus falls silent, whether it restarts by
+/// WARN lines that say what to set: what commands the drive, what it does when the bus falls silent, whether it restarts by
 /// itself (contract, 4.1 and 4.5).
 std::vector<Finding> settingFindings(const drive::Drive& drive, const SettingList& settings);
 /// Settings as read, for /diagnostics.

@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-// What decides over safety is read again in the refresh whose status it would be too old for.
+// What decides safety is read again in the refresh for whose status it would be too old.
 constexpr double GUARD_PERIOD_S = 0.9;
 constexpr const char* WARNING = "warning_code";
 

@@ -17,35 +17,35 @@ namespace bus
 /// What the bus allows the slow reads of one refresh (contract, 8.3).
 struct SlowLeave
 {
-  /// One that takes from the share may go.
+  /// A read that takes from the share may go.
   bool open = true;
-  /// Not before it is so old; 0: they are never read.
+  /// Age at which it may be read again; 0: they are never read.
   Duration period = std::chrono::seconds(1);
 };
 
-/// Which slow reads go with a refresh: what a leftover RUN or a restart of the drive can be told from goes first, after a
+/// Which slow reads go with a refresh: what reveals a leftover RUN or a restart of the drive goes first, after a
 /// return or a lost exchange (contract, 4.1); else at most one of these that is due, and one that the share of the slow
 /// values allows (contract, 8.3). Pure. Not thread safe; the bus guards it.
 class SlowTurns
 {
 public:
-  /// Whether our RUN is still in force is read before any other slow value.
+  /// Whether this node's RUN is still in force is read before any other slow value.
   void askForRun();
   /// The drive may have been switched off and on: whether it was is read before any other slow value.
   void suspectRestart();
-  /// \p words came with a read; what they tell need not go first any more.
+  /// \p words came with a read; what they show no longer has to go first.
   void noteRestart(const drive::Monitor& words);
-  /// They are all that a refresh has brought; \p tells_run: the drive can tell whether a RUN of the bus is on.
+  /// They are all that a refresh has brought; \p tells_run: the drive can report whether a RUN of the bus is on.
   void noteRun(const drive::Monitor& words, bool tells_run);
   /// A warning or a trip has come or gone: the drive's warning word is the next slow value to be read.
   void askForWarning();
-  /// The read at hand has brought it, or was to.
+  /// The current read has brought it, or was to.
   void noteWarning(const StatusRead& read);
   /// It is waited for, and \p reads has it.
   bool asksForWarning(const StatusReads& reads, TimePoint now) const;
   /// Nothing that was read counts any more.
   void forget();
-  /// The reads are others now.
+  /// The reads have changed.
   void restart();
 
   /// Those for a refresh that begins at \p now; \p first: it is the first one, which is to be short.

@@ -23,7 +23,7 @@ void StatusDraft::take(const StatusRead& read, const wire::Reply& reply)
   {
     mergeMonitor(read.values, words_.monitor);
   }
-  // What decides over safety counts in the refresh that brought it, whether it is read in every one or not.
+  // What decides safety counts in the refresh that brought it, whether or not it is read in every one.
   drive::Monitor signs;
   signs.run_seen = read.values.run_seen;
   signs.restarted = read.values.restarted;

@@ -11,11 +11,11 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What a refresh has told, with the time for which its run words count.
+/// What a refresh has brought, with the time to which its run words belong.
 struct StatusWords
 {
   drive::Monitor monitor;
-  /// When the oldest request for a word that tells whether the motor runs left.
+  /// When the oldest request left for a word that shows whether the motor runs.
   TimePoint sent_at;
 };
 
@@ -30,14 +30,14 @@ public:
   /// A read without values was answered at \p at: the drive is there.
   void heard(TimePoint at);
   /// The marker of a restart that was just read is dealt with: the rest of this refresh must not find it once more, after
-  /// the drive has been told what it had forgotten.
+  /// the drive has been sent what it had forgotten.
   void restartNoted();
-  /// The reason of a trip is still to be read: it belongs into the first status that shows the trip. True once.
+  /// The reason of a trip is still to be read: it belongs in the first status that shows the trip. True once.
   bool takeFaultDue();
 
   /// What has come so far.
   const StatusWords& words() const;
-  /// Enough has come for a status; \p run_needed: one of the reads tells whether the motor runs.
+  /// Enough has come for a status; \p run_needed: one of the reads shows whether the motor runs.
   bool suffices(bool run_needed) const;
   /// Arrival of the last fast reply; empty: none yet.
   const std::optional<TimePoint>& stamp() const;

@@ -18,7 +18,7 @@ namespace
 // Contract, 8.3: a slow value is shown until it is older than so many of its periods, and for so long in any case.
 constexpr double OLDEST_SLOW_VALUE_PERIODS = 2.5;
 constexpr double OLDEST_SLOW_VALUE_S = 10.0;
-// What decides over safety is never slowed, and leaves sooner.
+// What decides safety is never slowed, and is dropped sooner.
 constexpr double OLDEST_GUARD_S = 1.0;
 
 bool isSame(const drive::ReadBlock& one, const drive::ReadBlock& other)

@@ -32,9 +32,9 @@ struct StatusRead
   };
   drive::ReadBlock block;
   Kind kind = Kind::Fast;
-  /// Not asked for before this time: the drive refuses it, or it was not to be had.
+  /// Not asked for before this time: the drive refuses it, or it could not be read.
   TimePoint left_out_until;
-  /// It was answered, \ref last at last.
+  /// It was answered, most recently at \ref last.
   bool ever = false;
   TimePoint last;
   /// Between its last two answers.
@@ -44,7 +44,7 @@ struct StatusRead
   drive::Monitor values;
 
   bool brings(const char* field) const;
-  /// Whether the motor runs stands in it: without such a word there is no status (contract, 8.15).
+  /// It shows whether the motor runs: without such a word there is no status (contract, 8.15).
   bool tellsRun() const;
   /// It takes turns with others within the share of the slow values (contract, 8.3).
   bool isSlowed() const;
@@ -65,7 +65,7 @@ public:
   void change(const std::optional<drive::ReadBlock>& chosen, const std::vector<drive::ReadBlock>& proof);
   /// The same without a chosen one; nothing that was read counts any more.
   void forget();
-  /// The drive refuses this read: two smaller ones take its place, \p for_good: also when all are built anew. False: it
+  /// The drive refuses this read: two smaller ones take its place, \p for_good: also when all are built again. False: it
   /// brings one value only, and stays.
   bool split(std::size_t index, bool for_good);
 
@@ -74,7 +74,7 @@ public:
   const StatusRead& operator[](std::size_t index) const;
   /// Those of a kind that may be asked for at \p now, in order.
   std::vector<std::size_t> open(StatusRead::Kind kind, TimePoint now) const;
-  /// Any of them tells whether the motor runs.
+  /// Any of them shows whether the motor runs.
   bool tellRun() const;
   /// The same of those beside \p index that may be asked for at \p now.
   bool othersTellRun(std::size_t index, TimePoint now) const;

@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-// A stop that was confirmed so often in a row, and asked for again within so short a time, is one of a flood of them.
+// A stop that was confirmed so often in a row, and asked for again within so short a time, is part of a flood.
 constexpr unsigned FLOOD_OF_STOPS = 8;
 constexpr double FLOOD_PAUSE_S = 0.5;
 
@@ -149,7 +149,7 @@ StopJob::Progress StopJob::done(const wire::Reply& reply, bool may_be_late)
   }
   if (written() && isLastingRefusal(reply) && !has_told_)
   {
-    // This drive has never had such a read: it can't tell, so that the acknowledged write has to do.
+    // Such a read has never worked on this drive: it can't report RUN, so the acknowledged write must suffice.
     return confirmByAcknowledgement();
   }
   if (reply.outcome != wire::Outcome::Ok)
@@ -176,7 +176,7 @@ StopJob::Progress StopJob::done(const wire::Reply& reply, bool may_be_late)
   return Progress::Confirmed;
 }
 
-/// The drive can't tell whether RUN is off: its acknowledgement counts, if it can be no other request's.
+/// The drive can't report whether RUN is off: its acknowledgement counts, unless it may belong to another request.
 StopJob::Progress StopJob::confirmByAcknowledgement()
 {
   if (acknowledged_in_doubt_)

@@ -16,7 +16,7 @@ namespace bus
 /// The mode of this number (srv/Stop.srv); empty: there is none.
 std::optional<StopMode> stopModeOf(std::uint8_t number);
 
-/// The stop of one inverter (contract, rules 3.1 to 3.3): write RUN off, read back that it is off, and insist until both
+/// The stop of one inverter (contract, rules 3.1 to 3.3): write RUN off, read back that it is off, and keep trying until both
 /// have happened. It knows no priority and no time-out; the scheduler decides when its next exchange goes.
 class StopJob
 {
@@ -34,11 +34,11 @@ public:
   unsigned attempts() const;
   /// Written and acknowledged: the read-back is next.
   bool written() const;
-  /// Somebody asks for it again and again: it was confirmed several times in a row, each time shortly before the next one.
+  /// It is requested again and again: it was confirmed several times in a row, each time shortly before the next one.
   bool repeats() const;
-  /// The inverter is out of sight, or RUN was sent: whatever was confirmed may be over.
+  /// The inverter can't be reached, or RUN was sent: what was confirmed may no longer hold.
   void forgetConfirmation();
-  /// That its tries cost others dearly is to be said: once while it is pending.
+  /// It is to be reported that its tries cost others dearly: once while it is pending.
   bool takeCostly();
   /// When the last frame of any stop of this inverter left; the epoch: none has.
   TimePoint lastSentAt() const;
@@ -56,21 +56,22 @@ public:
     Failed,
     Confirmed
   };
-  /// \p may_be_late: the answer could as well be the late one to an earlier request of the same shape (rule 3.9), from
+  /// \p may_be_late: the answer could also be the late one to an earlier request of the same shape (rule 3.9), from
   /// which a stop's writes are exempt. Then only a read-back of RUN confirms, or a write that no late reply can answer.
   Progress done(const wire::Reply& reply, bool may_be_late = false);
-  /// The write that has just ended may be followed by an older request that sets RUN, in a gateway (contract, 8.8): whatever
-  /// its answer, only another write confirms.
+  /// The write that has just ended may be followed by an older request that sets RUN, in a gateway (contract, 8.8):
+  /// whatever its answer, only another write confirms.
   void writeOnceMore();
   /// Such a write has ended, and the other one has not gone yet.
   bool provisional() const;
-  /// Time from the request to the answer of its first frame, once; for where the way to the wire can't be seen.
+  /// Time from the request to the answer of its first frame, once; for ports where the first byte on the wire can't be
+  /// observed.
   std::optional<Duration> answered(TimePoint now);
-  /// The next write shall go only when no late reply of its shape can come any more; a loop-back sees to that.
+  /// The next write shall go only when no late reply of its shape can come any more; a loop-back ensures that.
   bool wantsClearLine() const;
   /// The read-back can't be asked now: the next attempt begins.
   void writeAgain();
-  /// No newer velocity takes the place of the pending stop; without this a stop by a command of 0 gives way to one.
+  /// No newer velocity replaces the pending stop; without this, a stop by a command of 0 gives way to one.
   void hold();
   bool held() const;
   /// RUN was seen off by a status read that was sent after the write.

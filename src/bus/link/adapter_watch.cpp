@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-/// What a chip that delivers at once shows, and one more.
+/// What a chip that delivers at once shows, plus one.
 constexpr double LONGEST_S = 0.002;
 }  // namespace
 
@@ -32,12 +32,12 @@ std::optional<Finding> AdapterWatch::finding() const
   }
   return Finding{ Level::Warn, "the adapter holds bytes back for up to " +
                                    util::millisecondsText(latency_->latency, 0) +
-                                   ", which every exchange takes longer: echo 1 | sudo tee " + latency_->file };
+                                   ", which lengthens every exchange: echo 1 | sudo tee " + latency_->file };
 }
 
 std::string AdapterWatch::text() const
 {
-  return latency_ ? util::millisecondsText(latency_->latency, 0) : "not told by its driver";
+  return latency_ ? util::millisecondsText(latency_->latency, 0) : "not reported by its driver";
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -13,16 +13,16 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What the adapter of a serial port adds to every exchange, as its driver tells it. Pure.
+/// What the adapter of a serial port adds to every exchange, as its driver reports it. Pure.
 class AdapterWatch
 {
 public:
-  /// Nothing: the driver does not tell, or the port is a network connection.
+  /// Nothing: the driver does not say, or the port is a network connection.
   void note(const std::optional<wire::AdapterLatency>& latency);
 
-  /// How long a reply may lie in the adapter; 0 where nobody knows.
+  /// How long a reply may stay in the adapter; 0 where that is unknown.
   Duration latency() const;
-  /// WARN above 2 ms, with the command that mends it: the bytes of every reply wait so long, unless 62 of them fill a
+  /// WARN above 2 ms, with the command that fixes it: the bytes of every reply wait so long, unless 62 of them fill a
   /// packet of the adapter's.
   std::optional<Finding> finding() const;
   /// For /diagnostics.

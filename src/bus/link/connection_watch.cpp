@@ -95,7 +95,7 @@ ConnectionWatch::Verdict ConnectionWatch::closed(TimePoint now, std::optional<st
     quick_closes_.push_back({ now, inverter, false });
     if (closedTooOften(now))
     {
-      // Once more at once, since there is something to stop; then with a distance.
+      // Once more immediately, since there is something to stop; then at intervals.
       not_before_ = troubled_ ? std::max(now, opened_at_ + seconds(SLOW_PERIOD_S)) : now;
       lost();
       troubled_ = true;

@@ -14,11 +14,11 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// Tells an orderly close of a TCP connection from a lost one, and when to connect again (contract, 8.9).
+/// Tells an orderly close of a TCP connection from a loss, and when to reconnect (contract, 8.9).
 ///
 /// A gateway ends a connection for many reasons that concern no motor: it was idle, a station did not answer, a repeat of
 /// its own failed. Such a connection is opened again at once and the motors run on, as long as that works: within half a
-/// second, with somebody answering, and not again and again. Pure; bus thread only.
+/// second, with a drive answering, and not again and again. Pure; bus thread only.
 class ConnectionWatch
 {
 public:
@@ -28,7 +28,7 @@ public:
     Resume,
     /// The connection is lost: motors are stopped and locked.
     Lost,
-    /// The same, because it was closed so often that somebody else seems to take it.
+    /// The same, because it was closed so often that another client seems to take it.
     TakenByAnother
   };
 
@@ -53,15 +53,15 @@ public:
   // --- what follows ---------------------------------------------------------------------------------------------------
   /// Between an orderly close and the next open connection.
   bool resuming() const;
-  /// Several connections in a row were closed in place of its answers, and nobody has answered in between.
+  /// Several connections in a row were closed in place of its answers, and no drive has answered in between.
   bool closedAgain(std::size_t inverter) const;
   /// The next inverter to be read before any write; nothing: all have been.
   std::optional<std::size_t> toRead() const;
-  /// Everybody who was online was asked after the reopening, and nobody answered.
+  /// Every inverter that was online was asked after the reopening, and none answered.
   bool nobodyAnswered() const;
   /// Not before this time is the next connection to be tried.
   TimePoint openNotBefore() const;
-  /// Connections in a row that were closed before anybody answered over them.
+  /// Connections in a row that were closed before any drive answered over them.
   unsigned closedUnused() const;
 
 private:
@@ -75,12 +75,12 @@ private:
   bool closedTooOften(TimePoint now) const;
   bool isTried(std::size_t inverter) const;
 
-  /// In the order of asking: who was under way at the close goes last.
+  /// In the order of asking: the one under way at the close goes last.
   std::deque<std::size_t> unread_;
   bool checking_ = false;
   bool anybody_ = false;
   std::optional<TimePoint> resuming_since_;
-  /// In place of whose answers the connection was closed since anybody answered.
+  /// Inverters in place of whose answers the connection was closed since any drive answered.
   std::vector<std::size_t> tried_;
   std::optional<TimePoint> last_good_;
   std::deque<QuickClose> quick_closes_;

@@ -11,9 +11,9 @@ namespace bus
 {
 namespace
 {
-// Contract, 8.8: so many lost requests without any late answer, and the gateway is silent by nature.
+// Contract, 8.8: after this many lost requests without any late answer the gateway is silent by nature.
 constexpr unsigned UNANSWERED_BY_NATURE = 3;
-// So many answers of the gateway's own in time, and its block has become so short.
+// After this many answers of the gateway's own in time its block has become that short.
 constexpr unsigned IN_TIME_BY_NATURE = 8;
 }  // namespace
 
@@ -66,7 +66,7 @@ void GatewayQueue::answered(TimePoint now, std::uint64_t ticket, bool by_gateway
   }
 }
 
-/// In time or not: so long is everybody kept waiting.
+/// In time or not: this is how long all others are kept waiting.
 void GatewayQueue::noteInTime(Duration took)
 {
   longest_in_time_ = std::max(longest_in_time_, took);
@@ -97,7 +97,7 @@ void GatewayQueue::lost(TimePoint now, std::uint64_t ticket)
 std::optional<GatewayQueue::Late> GatewayQueue::answeredLate(TimePoint now, std::uint64_t ticket)
 {
   const auto entry = find(ticket);
-  // A late answer to whatever request shows that waiting is worth it.
+  // A late answer to any request shows that waiting is worthwhile.
   unanswered_ = 0;
   if (entry == entries_.end())
   {
@@ -126,7 +126,7 @@ void GatewayQueue::connectionEnded(TimePoint now)
                  entries_.end());
 }
 
-/// One that was alone tells how long the gateway is kept by a station that doesn't answer.
+/// A request that was alone shows how long a station that doesn't answer blocks the gateway.
 void GatewayQueue::noteUnanswered(const Entry& entry)
 {
   if (entry.lost && !entry.orphan && !entry.behind_another)
@@ -137,7 +137,7 @@ void GatewayQueue::noteUnanswered(const Entry& entry)
   }
 }
 
-/// It was waited for until its connection ended: a gateway may say so that a station is silent.
+/// It was waited for until its connection ended: a gateway may report a silent station that way.
 void GatewayQueue::noteCutShort(const Entry& entry, TimePoint now)
 {
   if (!entry.lost || entry.orphan)
@@ -146,7 +146,7 @@ void GatewayQueue::noteCutShort(const Entry& entry, TimePoint now)
   }
   const Duration kept = std::min(now - entry.sent_at, wait());
   noteKept(entry, kept);
-  // At least: it may have been ended for another reason.
+  // At least: it may have ended for another reason.
   block_ = entry.behind_another ? block_ : std::max(block_, kept);
 }
 
@@ -165,7 +165,7 @@ void GatewayQueue::giveUp(TimePoint now)
     const bool over = (entry->lost || entry->orphan) && givenUpAt(*entry) <= now;
     if (over)
     {
-      // Not until now: who looks late has not been kept for so long.
+      // Not until now: a late look does not mean that it was blocked that long.
       noteKept(*entry, givenUpAt(*entry) - entry->sent_at);
       noteUnanswered(*entry);
     }
@@ -181,7 +181,7 @@ std::optional<Duration> GatewayQueue::tick(TimePoint now)
 
 // --- what may go -----------------------------------------------------------------------------------------------------
 
-/// What may start a motor is reckoned with for the whole time: that nobody has ever answered late proves nothing.
+/// What may start a motor is allowed for during the whole time: that no answer was ever late proves nothing.
 TimePoint GatewayQueue::givenUpAt(const Entry& entry) const
 {
   return entry.sent_at + (entry.risk == GatewayRisk::Motion || entry.orphan ? settings_.timeout : wait());

@@ -54,7 +54,7 @@ public:
   void sent(TimePoint now, std::uint64_t ticket, std::size_t inverter, GatewayRisk risk, bool probe = false);
   /// It was answered in time, by the drive, or \p by_gateway for a station that is silent.
   void answered(TimePoint now, std::uint64_t ticket, bool by_gateway = false);
-  /// Our own time-out has passed.
+  /// This node's own time-out has passed.
   void lost(TimePoint now, std::uint64_t ticket);
   /// What is known of a request that was answered after all.
   struct Late
@@ -65,12 +65,13 @@ public:
     bool alone = false;
     bool probe = false;
   };
-  /// The answer came after all; empty for a ticket that is not owed an answer any more.
+  /// The answer came after all; empty for a ticket that is no longer owed an answer.
   std::optional<Late> answeredLate(TimePoint now, std::uint64_t ticket);
   /// The connection has ended: no answer comes any more, but what was under way may still be carried out.
   void connectionEnded(TimePoint now);
-  /// Time has passed: what was waited for long enough is not owed any more. Returns how long a probe has kept the gateway
-  /// that was given up since the last call, whatever has shown it; the longest one of several, which ran side by side.
+  /// Time has passed: what was waited for long enough is not owed any more. Returns how long a probe that was given up
+  /// since the last call has blocked the gateway, whatever has shown it; the longest one of several, which ran side by
+  /// side.
   std::optional<Duration> tick(TimePoint now);
 
   // --- what may go ----------------------------------------------------------------------------------------------------
@@ -84,12 +85,13 @@ public:
   bool refreshUnanswered(TimePoint now, std::size_t inverter) const;
   /// Until when a request that may set \p inverter running can still be carried out; nothing: there is none.
   std::optional<TimePoint> motionUntil(TimePoint now, std::size_t inverter) const;
-  /// An older request than \p ticket was unanswered when that one was sent: that it was not answered in time says nothing.
+  /// An older request than \p ticket was unanswered when that one was sent: its time-out says nothing.
   bool behindAnother(std::uint64_t ticket) const;
 
   // --- what it has learned --------------------------------------------------------------------------------------------
-  /// How long the last request that no drive answered has kept the gateway; 0: none has. One that the gateway itself answered
-  /// in time, perhaps because it had asked in vain a moment ago, makes it shorter only after several such in a row.
+  /// How long the last request that no drive answered has blocked the gateway; 0: none has. One that the gateway itself
+  /// answered in time, perhaps because it had asked in vain a moment ago, makes it shorter only after several such in a
+  /// row.
   Duration block() const;
   /// How long nothing but stops may go because of one lost request, by what is known now: block(), or while one is waited
   /// for, the wait.
@@ -107,7 +109,7 @@ private:
     GatewayRisk risk = GatewayRisk::None;
     bool probe = false;
     TimePoint sent_at;
-    /// Our time-out has passed without an answer.
+    /// This node's time-out has passed without an answer.
     bool lost = false;
     bool behind_another = false;
     /// Of a connection that has ended.

@@ -11,9 +11,9 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// A link that is up but mute: nobody answers any more, or nobody ever has since it was opened (contract, 8.10). Opening it
-/// anew is all that can be done from here: a gateway may have gone deaf on one connection, an adapter may have lost its
-/// settings. Pure; bus thread only.
+/// A link that is up but mute: no drive answers any more, or none ever has since it was opened (contract, 8.10).
+/// Reopening it is all that can be done from here: a gateway may have gone deaf on one connection, an adapter may have
+/// lost its settings. Pure; bus thread only.
 class LinkWatch
 {
 public:
@@ -21,21 +21,21 @@ public:
   explicit LinkWatch(Duration response_timeout);
 
   void opened(TimePoint now);
-  /// Somebody has answered; a gateway for somebody else, too.
+  /// A drive has answered, or a gateway on behalf of one.
   void answered();
   /// A request that left at \p sent_at was not answered.
   void lost(TimePoint sent_at);
 
-  /// For \p duration until now nobody here has asked: that nobody has answered meanwhile says nothing of the link.
+  /// For \p duration until now this node did not ask: that no drive answered meanwhile says nothing about the link.
   void notWatching(Duration duration);
 
-  /// Nobody has answered for so long that it is the link, not a station, that is silent.
+  /// No answer has come for so long that the link, not a station, must be silent.
   bool wasSilent(TimePoint now) const;
-  /// Time to open the link anew.
+  /// Time to reopen the link.
   bool mute(TimePoint now) const;
-  /// It is about to be opened anew because of it. Returns true if that is to be said: the first time in a row.
+  /// It is about to be reopened because of that. Returns true if this is to be reported: the first time in a row.
   bool renewing(TimePoint now);
-  /// Nobody has answered since it was opened anew because nobody answered.
+  /// No answer has come since it was reopened for lack of answers.
   bool inVain() const;
 
 private:
@@ -44,9 +44,9 @@ private:
   bool ever_answered_ = false;
   /// When the first request left that was not answered since the last answer, or since it was opened.
   std::optional<TimePoint> silent_since_;
-  /// The same, however often it was opened anew.
+  /// The same, however often it was reopened.
   std::optional<TimePoint> unanswered_since_;
-  /// Until the next renewal, while nobody answers.
+  /// Until the next renewal, while no drive answers.
   Duration period_{ 0 };
   TimePoint renewed_at_;
 };

@@ -10,7 +10,7 @@ namespace bus
 {
 namespace
 {
-// Here alone: whoever writes the files takes what comes.
+// Only here: the writer of the files takes what it is given.
 constexpr double AUTOMATIC_DUMP_SPACING_S = 10.0;
 }  // namespace
 

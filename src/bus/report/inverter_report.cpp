@@ -28,7 +28,8 @@ void showExchangeError(const Inverter& inverter, InverterStatus& status)
   status.error_text = exchangeText(inverter);
 }
 
-/// The one that says most: why it is offline or locked more than that it is, a command's own more than a single exchange's.
+/// The most informative one: why it is offline or locked rather than that it is, a command's own rather than a single
+/// exchange's.
 void showError(const Inverter& inverter, TimePoint now, InverterStatus& status)
 {
   const bool exchange_failed = inverter.link.error() != 0;
@@ -59,8 +60,7 @@ std::string offlineText(const Inverter& inverter, TimePoint now)
   const Link& link = inverter.link;
   if (link.error() == wire::ERROR_PORT_LOST)
   {
-    return "offline (" + errorIdText(link.error()) +
-           "), since the port is not open: what to do about it is told of the bus";
+    return "offline (" + errorIdText(link.error()) + "), since the port is not open: see what is reported for the bus";
   }
   return "offline (" + errorIdText(link.error()) + " " + offlineReason(inverter) + "; last answer " +
          (link.lastAnswer() ? util::durationText(now - *link.lastAnswer()) + " ago)" : "never)") + "; " +
@@ -87,7 +87,7 @@ std::vector<Finding> errorsOf(const Inverter& inverter, TimePoint now)
     findings.push_back(
         { Level::Error,
           inverter.lost_writes.text() + " (" + std::to_string(inverter.lost_writes.inARow()) +
-              " in a row): stopped and locked, the stop is sent until it is acknowledged; check who "
+              " in a row): stopped and locked, the stop is sent until it is acknowledged; check what "
               "else writes to the drive, its write protection, the gateway or converter, and the wiring" });
   }
   if (inverter.interlock.isFaulted())
@@ -101,14 +101,14 @@ std::vector<Finding> errorsOf(const Inverter& inverter, TimePoint now)
   return findings;
 }
 
-/// The set-point goes to the EEPROM, because the drive could not be told otherwise at connect.
+/// The set-point goes to the EEPROM, because the drive could not be set otherwise at connect.
 bool writesWear(const Inverter& inverter)
 {
   return inverter.drive.wears("frequency") && !inverter.settings.connected() &&
          inverter.drive.sequence("forward") != nullptr;
 }
 
-/// What the profile leaves open, or the drive does not do as the profile could.
+/// What the profile leaves open, or the drive does not do although the profile could.
 std::vector<std::string> profileWarnings(const Inverter& inverter)
 {
   std::vector<std::string> warnings;

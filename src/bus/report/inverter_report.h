@@ -9,7 +9,7 @@
 
 #include "bus/inverter/inverter.h"
 
-// What users are told of one inverter.
+// What is reported to users of one inverter.
 
 namespace inverter_bus
 {

@@ -29,14 +29,14 @@ struct LineFacts
   std::string peer_words;
 };
 
-/// Copies of that: others ask for it while the bus thread uses the line. Pure; not thread safe, the bus guards it.
+/// A copy of that: others ask for it while the bus thread uses the line. Pure; not thread safe, the bus guards it.
 class LineWatch
 {
 public:
   void note(TimePoint now, const LineFacts& facts);
 
   const LineFacts& facts() const;
-  /// Somebody else polls on this line, or behind this gateway: seen within the last minute.
+  /// Another master polls on this line, or behind this gateway: seen within the last minute.
   std::optional<Finding> foreignFinding(TimePoint now, bool gateway) const;
 
 private:

@@ -24,7 +24,7 @@ void Outbox::at(TimePoint now)
 
 void Outbox::event(const std::string& text)
 {
-  // More in one turn of the bus than are kept at all: who floods it must not fill the memory.
+  // More in one turn of the bus than are kept at all: a flood must not fill the memory.
   if (outputs_.events.size() < MOST_EVENTS)
   {
     outputs_.events.push_back(traceEvent(now_, text));
@@ -46,7 +46,7 @@ void Outbox::publish(TimePoint now, const Inverter& inverter)
   if (locked != last.locked)
   {
     last.locked = locked;
-    event(inverter.config.name + (locked ? ": is locked" : ": is not locked any more"));
+    event(inverter.config.name + (locked ? ": is locked" : ": is no longer locked"));
   }
 }
 

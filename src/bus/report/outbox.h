@@ -30,10 +30,11 @@ using PendingAnswers = std::vector<std::pair<AnswerCallback, Answer>>;
 
 class Inverter;
 
-/// Subject of the lines that tell the state of the port (see Finding); no inverter's name has a space.
+/// Subject of the lines that report the state of the port (see Finding); no inverter's name has a space.
 constexpr const char* PORT_SUBJECT = "the port";
 
-/// What goes out after a step, in its order: the bus thread delivers it with no lock held. Not thread safe; the bus guards it.
+/// What goes out after a step, in its order: the bus thread delivers it with no lock held. Not thread safe; the bus
+/// guards it.
 class Outbox
 {
 public:
@@ -51,7 +52,7 @@ public:
   void busStatus(const BusStatus& status);
   /// The flight recorder is to be written, for this reason.
   void trace(const std::string& reason);
-  /// \p callback may be empty: then nobody waits.
+  /// \p callback may be empty: then no caller waits.
   void answer(const AnswerCallback& callback, const Answer& answer);
   /// The answer of a call that was refused.
   void refuse(const AnswerCallback& callback, std::uint16_t error_id, const std::string& message);

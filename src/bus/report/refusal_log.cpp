@@ -46,7 +46,7 @@ std::vector<std::string> RefusalLog::takeLines(TimePoint now)
       kind = kinds_.erase(kind);
       continue;
     }
-    lines_.push_back(refused.last + " (the last of " + std::to_string(refused.held_back) + " since the line before)");
+    lines_.push_back(refused.last + " (the last of " + std::to_string(refused.held_back) + " since the previous line)");
     refused.told_at = now;
     refused.held_back = 0;
     ++kind;

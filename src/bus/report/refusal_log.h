@@ -18,8 +18,8 @@ namespace inverter_bus
 namespace bus
 {
 /// What the log says of refused velocities: the first one of its kind at once, then one line in 5 s with a count of those
-/// that it stands for, so that a stream which is refused 100 times a second is told and does not fill the log. A kind is an
-/// inverter and an error id; what the users send can't make more of them. Not thread safe; the bus guards it.
+/// that it represents, so that a stream that is refused 100 times a second is reported and does not fill the log. A kind
+/// is an inverter and an error id; what the users send can't make more of them. Not thread safe; the bus guards it.
 class RefusalLog
 {
 public:
@@ -35,8 +35,8 @@ public:
   void notCommanded(std::size_t inverter, const std::string& reason);
   /// A command of this inverter was accepted.
   void accepted(std::size_t inverter);
-  /// Why the command watchdog of \p inverter stops it after \p command_timeout [s]: nobody has sent anything, or nothing that could
-  /// be accepted.
+  /// Why the command watchdog of \p inverter stops it after \p command_timeout [s]: no publisher has sent anything, or
+  /// nothing that could be accepted.
   std::string watchdogReason(std::size_t inverter, double command_timeout) const;
 
 private:
@@ -58,7 +58,7 @@ private:
   std::vector<Refused> since_accepted_;
 };
 
-/// `velocity 0.3: locked: ...`: \p reason with the value that it is about, unless it names it itself (range).
+/// `velocity 0.3: locked: ...`: \p reason with the value that it is about, unless the reason already names it (range).
 std::string refusedVelocity(double velocity, std::uint16_t error_id, const std::string& reason);
 }  // namespace bus
 }  // namespace inverter_bus

@@ -194,7 +194,7 @@ Duration Budget::longestExchange() const
       longest = std::max(longest, line_.cost(request, request.reply_delay) + request.response_timeout);
     }
   }
-  // One that breaks off, or pauses, ends a pause later.
+  // A reply that breaks off, or pauses, ends a pause later.
   return longest + line_.patience();
 }
 
@@ -290,8 +290,8 @@ std::optional<Finding> Budget::judgeDriveTimeout(const std::string& name, Durati
     return std::nullopt;
   }
   return Finding{ Level::Warn, name + ": its own communication time-out of " + util::millisecondsText(timeout) +
-                                   " can't be met for certain: up to " + util::millisecondsText(margin) +
-                                   " may lie between two frames; raise it, or the baud rate, or take fewer inverters" };
+                                   " can't be kept with certainty: up to " + util::millisecondsText(margin) +
+                                   " may pass between two frames; raise it, or the baud rate, or use fewer inverters" };
 }
 
 Budget::Figures Budget::figures() const
@@ -316,7 +316,7 @@ std::string Budget::behindOthers() const
              ? " and up to " + util::millisecondsText(seconds(configuration_.bus.gateway_timeout)) +
                    " for each inverter that does not answer"
              : ", " + util::millisecondsText(worstStopUncut()) +
-                   " behind another stop, a reset or a write to an EEPROM that nobody answers";
+                   " behind another stop, a reset or a write to an EEPROM that is not answered";
 }
 
 Duration Budget::longestReturn(Duration block, std::size_t offline)
@@ -325,7 +325,7 @@ Duration Budget::longestReturn(Duration block, std::size_t offline)
   return seconds(std::max(RETURN_S, static_cast<double>(std::max<std::size_t>(offline, 1)) * each));
 }
 
-/// Contract, 8.8: what the probes' share makes of 3.7 where the gateway is kept for long.
+/// Contract, 8.8: what the probes' share means for 3.7 where the gateway is blocked for long.
 std::optional<Finding> Budget::returnBehindGateway() const
 {
   const Duration block = seconds(configuration_.bus.gateway_timeout);
@@ -335,13 +335,13 @@ std::optional<Finding> Budget::returnBehindGateway() const
   }
   return Finding{ Level::Ok,
                   "an inverter that was offline may need up to " + util::durationText(longestReturn(block, 1)) +
-                      " (times the number of those that are offline) to be back, if a silent station keeps the "
+                      " (times the number of those that are offline) to return, if a silent station blocks the "
                       "gateway for gateway_timeout (" +
                       util::durationText(block) + "); " + util::durationText(longestReturn({}, 1)) +
                       " if it does so for " + util::durationText(seconds(SHORT_BLOCK_S)) + " at most" };
 }
 
-/// Contract, 8.3: the share is small; who wants fresher values leaves others out.
+/// Contract, 8.3: the share is small; fresher values are had by leaving others out.
 std::optional<Finding> Budget::slowFinding() const
 {
   const Duration period = slowPeriod();
@@ -351,7 +351,7 @@ std::optional<Finding> Budget::slowFinding() const
   }
   return Finding{ Level::Warn, "slow values (voltages, torque, temperature, warnings) can be read only every " +
                                    util::durationText(period) + " within " + util::numberText(SLOW_SHARE * 100.0) +
-                                   " % of the wire; leave out with skip what nobody needs, or raise the baud rate" };
+                                   " % of the wire; use skip to leave out what is not needed, or raise the baud rate" };
 }
 
 std::vector<Finding> Budget::findings() const

@@ -20,7 +20,7 @@ namespace bus
 class Budget
 {
 public:
-  /// Everything that the running bus needs of it, to be computed once.
+  /// Everything that the running bus needs of it, computed once.
   struct Figures
   {
     Duration cycle{ 0 };
@@ -42,8 +42,9 @@ public:
   /// One status cycle of all inverters without commands, slow values included in proportion. They have their share of the
   /// wire, and what is never slowed comes once a second.
   Duration cycle() const;
-  /// Acceptance of a stop to the last bit of its frame: the exchange in flight, unanswered until the stop cuts it (contract,
-  /// 8.4), then the frame. Drives that take longer than 5 ms to begin a reply are waited for longer: Waits has that.
+  /// Acceptance of a stop to the last bit of its frame: the exchange in flight, unanswered until the stop cuts it
+  /// (contract, 8.4), then the frame. Drives that take longer than 5 ms to begin a reply are waited for longer: Waits has
+  /// that.
   Duration worstStop() const;
   /// The same behind one that no stop cuts: another stop, a reset, a write to the EEPROM, and whatever a gateway
   /// has (contract, 8.8).
@@ -51,12 +52,13 @@ public:
   /// Longest time between two frames to the same inverter: every read of the cycle alternates with a velocity of one
   /// inverter, and one exchange is lost.
   Duration longestGap() const;
-  /// How long a drive whose own time-out comes near may have to wait for its turn all the same: an exchange in flight, a
+  /// How long a drive whose own time-out is close may still have to wait for its turn: an exchange in flight, a
   /// velocity for all inverters under way, and every other drive's turn before it.
   Duration deadlineMargin() const;
   /// The longest exchange in use: its reply begins when its time is almost up, and has a pause in it.
   Duration longestExchange() const;
-  /// How often each slow value can be read within the share of the wire that all have (contract, 8.3), while all motors run.
+  /// How often each slow value can be read within the share of the wire that all have (contract, 8.3), while all motors
+  /// run.
   Duration slowPeriod() const;
   /// The longest one that a stop cuts as soon as it may: its reply begins at the last moment, and has a pause in it.
   Duration longestCutExchange() const;
@@ -69,8 +71,9 @@ public:
   /// The same with deadlineMargin() at hand.
   static std::optional<Finding> judgeDriveTimeout(const std::string& name, Duration timeout, Duration margin);
 
-  /// How long an inverter that answers again may stay offline behind a gateway which each silent station keeps for \p block:
-  /// the probes of \p offline inverters (itself included, at least 1) take turns. With a short block what rule 3.7 says.
+  /// How long an inverter that answers again may stay offline behind a gateway that each silent station blocks for \p
+  /// block: the probes of \p offline inverters (itself included, at least 1) take turns. With a short block what rule 3.7
+  /// says.
   static Duration longestReturn(Duration block, std::size_t offline);
 
 private:

@@ -76,7 +76,7 @@ void Interlock::faulted(bool faulted)
   faulted_ = faulted;
 }
 
-/// Of which nobody can get past; Neutral: everybody must return to it, and nobody can have yet.
+/// The reason that no publisher gets past; Neutral: all must return to it, and none can have done so yet.
 LockReason Interlock::reason(const Holds& holds) const
 {
   if (holds.unidentified)
@@ -106,12 +106,12 @@ LockReason Interlock::reason(const Holds& holds) const
 bool Interlock::silent(TimePoint now, const Stream* stream) const
 {
   Duration needed = silenceNeeded();
-  // Whoever is not known may be one of the forgotten, whose stream goes on.
+  // A publisher that is not known may be one of the forgotten, whose stream goes on.
   const bool commanded = stream != nullptr && stream->last;
   TimePoint since = commanded ? *neutral_since_ : std::max(*neutral_since_, forgotten_last_);
   if (commanded)
   {
-    // The longest of the last few: a publisher that sends in pairs does not become a fast one by that.
+    // The longest of the last few: a publisher that sends in pairs does not count as a fast one.
     const Duration spacing = *std::max_element(stream->spacings.begin(), stream->spacings.end());
     needed = std::max(needed, std::min(2 * spacing, seconds(LONGEST_SPACING_SILENCE_S)));
     since = std::max(since, *stream->last);
@@ -129,7 +129,7 @@ Interlock::Verdict Interlock::judge(TimePoint now, const Publisher& publisher, c
 {
   const Stream* stream = find(publisher.name);
   const bool old_message = publisher.latched && publisher.first_on_connection;
-  // One that is not known may be among the forgotten.
+  // A publisher that is not known may be among the forgotten.
   const bool heard_before =
       stream == nullptr ? forgotten_last_ != TimePoint() : stream->topics.count(publisher.topic) != 0;
   if (old_message && heard_before)
@@ -157,7 +157,7 @@ Interlock::Verdict Interlock::judge(TimePoint now, const Publisher& publisher, c
   return { Permission::Granted, LockReason::None };
 }
 
-/// Whoever has sent anything is known from then on: what it repeats on its next connection is old.
+/// A publisher that has sent anything is known from then on: what it repeats on its next connection is old.
 Interlock::Stream& Interlock::hear(TimePoint now, const Publisher& publisher)
 {
   auto found = streams_.find(publisher.name);
@@ -211,13 +211,14 @@ void Interlock::zeroed(TimePoint now, const Publisher& publisher)
   Stream& stream = book(now, publisher);
   stream.neutral = true;
   stream.nonzero = false;
-  // What was moving is on its way to rest, and the stop of a 0 insists by itself: nothing is left for the command watchdog.
+  // What was moving is on its way to rest, and the stop of a 0 keeps trying by itself: nothing is left for the command
+  // watchdog.
   last_accepted_.reset();
 }
 
 void Interlock::nearlyZeroed(TimePoint now, const Publisher& publisher)
 {
-  // Neither a message nor a 0: a stream that goes through zero must not get past a lock by that, and one that rests near
+  // Neither a message nor a 0: a stream that passes through zero must not get past a lock that way, and one that rests near
   // zero is silent all the while.
   hear(now, publisher).nonzero = false;
   last_accepted_.reset();

@@ -32,7 +32,7 @@ enum class LockReason
 {
   /// It is not.
   None,
-  /// The drive has not told yet, or not again, what it is.
+  /// The drive has not reported what it is, yet or again.
   Unidentified,
   /// No complete status has come since the start.
   Unread,
@@ -45,19 +45,19 @@ enum class LockReason
   Neutral
 };
 
-/// What bars velocities for as long as it lasts. Other parts of the inverter know of it, so that it is handed in with each
+/// What bars velocities for as long as it lasts. Other parts of the inverter know it, so it is passed in with each
 /// question.
 struct Holds
 {
-  /// A stop is pending whose place no velocity takes, though it locks nobody: 0xB002.
+  /// A stop is pending that no velocity replaces, though it locks no publisher: 0xB002.
   bool stop = false;
   bool unidentified = false;
   bool resetting = false;
   bool in_setup = false;
 };
 
-/// Return to neutral and command watchdog of one inverter (contract, sections 4.2 and 4.3), as one pure state machine: time comes
-/// in, permissions come out.
+/// Return to neutral and command watchdog of one inverter (contract, sections 4.2 and 4.3), as one pure state machine:
+/// time comes in, permissions come out.
 ///
 ///     start-up ----+
 ///     stop --------+--> LOCKED --(stop confirmed, no fault, online, and the publisher has sent 0 or was silent)--> free
@@ -65,9 +65,9 @@ struct Holds
 ///     fault -------+       +---------------------------------------------------------------------------------------+
 ///     offline -----+
 ///
-/// A lock counts per publisher: whoever has not returned to neutral since stays refused, whatever others do. A hold locks
+/// A lock counts per publisher: one that has not returned to neutral since stays refused, whatever others do. A hold locks
 /// while it lasts; after it, only those whose velocities it has refused must return to neutral: nothing has stopped, but a
-/// stream must not start a motor at a moment that nobody can foresee. Not thread safe; the bus guards it.
+/// stream must not start a motor at an unforeseeable moment. Not thread safe; the bus guards it.
 class Interlock
 {
 public:
@@ -78,7 +78,7 @@ public:
   /// The inverter has answered for the first time (start-up) or again (return): the silence counts from here.
   void online(TimePoint now);
   void offline();
-  /// A stop was asked for by anybody but a command of 0: everybody must return to neutral.
+  /// A stop was requested by anything but a command of 0: all publishers must return to neutral.
   void stopRequested();
   void stopConfirmed(TimePoint now);
   void faulted(bool faulted);
@@ -90,17 +90,19 @@ public:
     /// If it is Locked.
     LockReason reason = LockReason::None;
   };
-  /// Judges a velocity other than 0 and changes nothing. What counts more comes first (contract, section 2: the order of ids).
+  /// Judges a velocity other than 0 and changes nothing. What takes precedence comes first (contract, section 2: the
+  /// order of ids).
   Verdict judge(TimePoint now, const Publisher& publisher, const Holds& holds) const;
-  /// Books a velocity other than 0. \p accepted: it was granted and is in range; feeds the command watchdog. A refused one ends
-  /// the publisher's neutral: a stream of refused commands must not come through when the lock's reason goes away.
+  /// Books a velocity other than 0. \p accepted: it was granted and is in range; feeds the command watchdog. A refused
+  /// one ends the publisher's neutral: a stream of refused commands must not come through when the lock's reason goes
+  /// away.
   void commanded(TimePoint now, const Publisher& publisher, bool accepted, const Holds& holds);
   /// Books a velocity of 0: neutral for this publisher.
   void zeroed(TimePoint now, const Publisher& publisher);
   /// Books a velocity near 0: for the lock as if nothing had come, so that it neither ends a silence nor is a return to
   /// neutral; for the command watchdog as a 0.
   void nearlyZeroed(TimePoint now, const Publisher& publisher);
-  /// No RUN of ours is in force any more: nothing for the command watchdog to watch.
+  /// No RUN from this node is in force any more: nothing for the command watchdog to watch.
   void resting();
 
   // --- answers ----------------------------------------------------------------------------------------------------
@@ -108,10 +110,11 @@ public:
   bool watchdogDue(TimePoint now) const;
   /// When watchdogDue() becomes true if nothing comes; nothing: never.
   std::optional<TimePoint> watchdogAt() const;
-  /// What status shows: true while nobody has returned to neutral and a stream goes on being refused, or the lock's reason
-  /// is not over. False, a publisher whose stream has never paused is still refused: the lock counts per publisher.
+  /// What status shows: true while no publisher has returned to neutral and a stream goes on being refused, or the lock's
+  /// reason is not over. False, a publisher whose stream has never paused is still refused: the lock counts per
+  /// publisher.
   bool locked(TimePoint now, const Holds& holds) const;
-  /// Silence that unlocks for somebody who was never heard; whoever sends slowly needs twice his spacing.
+  /// Silence that unlocks for a publisher that was never heard; one that sends slowly needs twice its spacing.
   Duration silenceNeeded() const;
   bool stopPending() const;
   bool isOffline() const;
@@ -142,7 +145,7 @@ private:
 
   Duration command_timeout_;
   std::map<std::string, Stream> streams_;
-  /// The last message of any publisher that is not in streams_ any more.
+  /// The last message of any publisher that is no longer in streams_.
   TimePoint forgotten_last_;
   unsigned generation_ = 1;
   bool stop_pending_ = false;

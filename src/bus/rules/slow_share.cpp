@@ -11,7 +11,7 @@ namespace bus
 {
 namespace
 {
-// Of a cycle that is shorter little could be saved, of a longer one too much.
+// From a shorter cycle little could be saved, from a longer one too much.
 constexpr double SHORTEST_SAVING_S = 0.7;
 constexpr double LONGEST_SAVING_S = 5.0;
 // On a line so slow that one exchange takes most of the share.

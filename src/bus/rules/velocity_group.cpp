@@ -31,7 +31,7 @@ std::vector<Target> stopsOf(std::vector<Target> targets, const IsStop& stops)
   return stopping;
 }
 
-/// The first problem is told: the others would say no more, and a message may have a million.
+/// The first problem is reported: the others would add nothing, and a message may have a million.
 void complain(VelocityGroup& group, const std::string& name, const char* why)
 {
   if (group.problem.empty())

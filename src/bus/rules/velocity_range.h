@@ -11,14 +11,14 @@ namespace inverter_bus
 {
 namespace bus
 {
-/// What a velocity asks for, before anybody looks at what is armed or locked.
+/// What a velocity asks for, before anything armed or locked is considered.
 struct RangedVelocity
 {
   enum class Kind
   {
     /// Exactly 0.
     Zero,
-    /// Rounds to 0 Hz, or lies below the minimum: takes RUN off like a 0.
+    /// Rounds to 0 Hz, or is below the minimum: takes RUN off like a 0.
     NearZero,
     /// Within the range; \ref velocity is what to command.
     Motion,
@@ -31,8 +31,8 @@ struct RangedVelocity
   std::string why;
 };
 
-/// The range of one inverter's velocities (contract, 8.5): NaN and infinity are refused, near zero is a stop, 1e-6 beyond the
-/// maximum is the maximum (a publisher that computes in 32 bits means it), and what lies further beyond is refused or
+/// The range of one inverter's velocities (contract, 8.5): NaN and infinity are refused, near zero is a stop, 1e-6 beyond
+/// the maximum is the maximum (a publisher that computes in 32 bits means it), and what is further beyond is refused or
 /// clamped. No state.
 class VelocityRange
 {

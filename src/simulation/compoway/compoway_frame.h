@@ -23,7 +23,7 @@ constexpr std::uint8_t COMPOWAY_ETX = 0x03;
 /// Packs a body: STX before it, ETX and BCC behind it.
 Bytes compowayFrame(const std::string& body);
 
-/// What a receiver makes of a stream of bytes: everything before an STX is nothing, a new STX starts afresh, the byte
+/// How a receiver reads a stream of bytes: everything before an STX is ignored, a new STX starts afresh, the byte
 /// after ETX is the BCC.
 /// The first complete frame of \p stream, STX to BCC, right or wrong; nothing: there is none.
 std::optional<Bytes> findCompowayFrame(const Bytes& stream);

@@ -18,7 +18,7 @@ namespace simulation
 constexpr double OVERCURRENT = 2.2;
 
 /// When a drive should look at its motor again: at the end of the present piece of the ramp, at most 0.1 s later; not
-/// before `limit` when the motor stands.
+/// before `limit` when the motor is at rest.
 TimePoint nextLook(const Motor& motor, TimePoint now, TimePoint limit);
 
 /// What the motor really does, in the words of `NAME show`. \p current [A] is what the drive measures.

@@ -15,7 +15,7 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// Which parameters say who commands a drive.
+/// The parameters that say what commands a drive.
 struct CommandSources
 {
   std::vector<ParameterMemory::Index> parameters;
@@ -23,7 +23,7 @@ struct CommandSources
   ParameterMemory::Index highest = ParameterMemory::NONE;  ///< the maximum frequency
 };
 
-/// Somebody at the panel who sets the drive's command sources to the panel, runs the motor, and gives it back.
+/// A user at the panel: sets the drive's command sources to the panel, runs the motor, and gives it back.
 class PanelControl
 {
 public:

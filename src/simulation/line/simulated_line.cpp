@@ -16,7 +16,7 @@ using Source = FrameRecord::Source;
 
 namespace
 {
-constexpr std::size_t LONGEST_UNFINISHED = 256;  // [bytes] more without an end is nothing that any drive keeps
+constexpr std::size_t LONGEST_UNFINISHED = 256;  // [bytes] no drive keeps more than this without an end
 
 std::string stationOf(const Bytes& frame, Protocol protocol)
 {

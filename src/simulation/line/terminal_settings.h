@@ -12,14 +12,15 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// What a client has set a pseudo-terminal to, as far as its other end can see it. Linux keeps the baud rate, CSTOPB, PARODD and
-/// INPCK, and drops PARENB and CSIZE (drivers/tty/pty.c). So odd parity shows as PARODD and even parity as INPCK alone, which
-/// this driver and libmodbus set with parity and clear without; pyserial never does, and its even parity looks like none.
+/// What a client has set a pseudo-terminal to, as far as its other end can see it. Linux keeps the baud rate, CSTOPB,
+/// PARODD and INPCK, and drops PARENB and CSIZE (drivers/tty/pty.c). So odd parity shows as PARODD and even parity as
+/// INPCK alone, which this driver and libmodbus set with parity and clear without; pyserial never does, and its even
+/// parity looks like none.
 /// \p descriptor is either end of the terminal, \p assumed what can't be seen: data bits and protocol. Nothing where the
 /// terminal can't be asked.
 std::optional<LineSettings> settingsOf(int descriptor, const LineSettings& assumed);
 
-/// Raw, and set as a client with these settings would: until one comes that says otherwise.
+/// Raw, and set as a client with these settings would set it, until a client sets it otherwise.
 void setTerminal(int descriptor, const LineSettings& settings);
 }  // namespace simulation
 }  // namespace inverter_bus

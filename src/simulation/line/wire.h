@@ -54,7 +54,7 @@ public:
   /// What is sent from now on is sent with these.
   void set(const LineSettings& settings);
 
-  /// What is being sent, or not quite done with. References stay valid while others begin; not after removeOver().
+  /// What is being sent, or not quite finished. References stay valid while others begin; not after removeOver().
   std::deque<Transmission>& live();
   const std::deque<Transmission>& live() const;
   Transmission& open(FrameRecord::Source source);

@@ -67,7 +67,7 @@ protected:
 
   /// \p station addresses several drives and this one is among them; plain Modbus: 0.
   virtual bool isGroup(std::uint8_t station) const;
-  /// False for a broadcast that the drive passes over although its function code is one for broadcasts.
+  /// False for a broadcast that the drive ignores although its function code is one for broadcasts.
   virtual bool takesBroadcast(const Bytes& frame) const;
   /// From the end of the request's silence to the reply.
   virtual Duration replyDelay() const = 0;

@@ -17,7 +17,7 @@ class SimulatedBus;
 /// Runs one command of the text grammar that standard input and the ROS service share. Words are separated by blanks;
 /// times are seconds. `#` starts a comment.
 ///
-///     help | list                        what there is
+///     help | list                        commands | targets
 ///     bus show                           counters of the line, key=value
 ///     bus frames [N]                     the last N frames (10), separated by |
 ///     bus unplug [S] | bus plug          the master's adapter is pulled out (for S) and put in again

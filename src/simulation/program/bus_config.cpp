@@ -171,7 +171,7 @@ void finish(BusConfig& config)
   for (DriveConfig& drive : config.drives)
   {
     checkModel(drive, config.line.protocol);
-    // Two drives on one station must not have one chance.
+    // Two drives on one station must not have the same random numbers.
     std::uint64_t& others = on_station[drive.options.station];
     drive.options.seed = 1000U + static_cast<std::uint64_t>(drive.options.station) + 1000000U * others;
     ++others;

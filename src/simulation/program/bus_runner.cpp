@@ -119,7 +119,7 @@ timespec BusRunner::waitTime() const
   return time;
 }
 
-/// Until one of them has something to say, or the next instant of the bus has come.
+/// Until one of them has something to read, or the next instant of the bus has come.
 void BusRunner::wait(pollfd* watched, std::size_t count)
 {
   timespec timeout{};

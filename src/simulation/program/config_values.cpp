@@ -50,7 +50,7 @@ bool readLineKey(const std::string& key, const Cursor& value, LineSettings& line
 {
   if (key == "baud_rate")
   {
-    // Whatever a drive or a port may have; which of them a drive really has it says itself.
+    // All that a drive or a port may have; each drive itself says which it really has.
     line.baud_rate = static_cast<int>(value.integer(300, 1000000).value_or(0));
   }
   else if (key == "data_bits")

@@ -56,7 +56,7 @@ OpenResult Line::open(std::string& error)
   {
     gateway_->opened();
   }
-  // Somebody else's frame may have been under way.
+  // Another master's frame may have been under way.
   last_use_at_ = clock_.now();
   ready_at_ = last_use_at_ + gap();
   return result;
@@ -213,7 +213,7 @@ bool Line::send(const Bytes& frame, Reply& reply)
   return true;
 }
 
-/// Tells the gateway's record what is under way.
+/// Enters what is under way into the gateway's record.
 void Line::noteAsked(const Waiting& waiting, const Reply& reply)
 {
   if (!gateway_)
@@ -310,7 +310,7 @@ TimePoint Line::waitUntil(const Waiting& waiting) const
 /// As receive(), but from \p from on \p cut becomes true, with Silence, as soon as a stop waits.
 ReceiveResult Line::receiveUnlessCut(TimePoint deadline, TimePoint from, const GiveWay& give_way, bool& cut)
 {
-  // In short turns: so a stop needs no way to wake whatever the port waits for. Who answers in time is not looked at.
+  // In short turns: so a stop needs no way to wake the port. A drive that answers in time is not affected.
   for (TimePoint look = from; give_way.stop_waits && look < deadline; look = clock_.now() + LOOK_PERIOD)
   {
     const ReceiveResult result = receive(look);
@@ -384,7 +384,7 @@ void Line::giveUp(Waiting& waiting, Reply& reply)
 /// The port has said that it is gone.
 void Line::noteLoss()
 {
-  // What the other end said last may say why.
+  // The last words of the other end may explain it.
   skip(buffer_.size());
   reportDamaged();
   last_loss_ = port_.lastLoss();

@@ -97,7 +97,7 @@ bool Line::consume(Waiting& waiting, Reply& reply)
   }
   if (buffer_.empty())
   {
-    // It was noise, or somebody else's.
+    // It was noise, or another master's frame.
     waiting.first_byte_at.reset();
   }
   return false;
@@ -233,7 +233,7 @@ void Line::consumeIdleHead()
       {
         gateway_->takeLate(answerOf(parsed));
       }
-      // A protocol calls nothing a reply where nothing was asked.
+      // A protocol reports no reply where nothing was asked.
       const ExceptionCodes own = request != nullptr ? request->own_exceptions : everyExceptionOfADrive();
       noteAnswer(outcomeOf(parsed, gatewayCode(parsed, own)), parsed, take(parsed.consumed));
       return;
@@ -251,7 +251,7 @@ GatewayRecord::Answer Line::answerOf(const Parsed& parsed) const
   return answer;
 }
 
-/// True if \p parsed is the late reply to a lost request, false if nobody here has asked for it.
+/// True if \p parsed is the late reply to a lost request, false if this node has not asked for it.
 bool Line::noteUnasked(const Parsed& parsed, const Bytes& raw)
 {
   const bool own = (gateway_ ? takeLateFromGateway(parsed) : takeLate(parsed)) || parsed.kind != Parsed::Kind::Foreign;

@@ -17,7 +17,7 @@ constexpr double FAST_CHARACTER_S = 0.0005;
 
 /// 16 ms of an FTDI adapter's latency timer, and some reserve.
 constexpr std::chrono::milliseconds ADAPTER_PAUSE{ 25 };
-/// The highest trigger level of a 16550A's FIFO, 14, and the 4 characters of silence after which it tells of less.
+/// The highest trigger level of a 16550A's FIFO, 14, and the 4 characters of silence after which it reports fewer.
 constexpr double FIFO_CHARACTERS = 18.0;
 /// Contract, 8.4.
 constexpr std::chrono::milliseconds BRIEF_PAUSE{ 5 };

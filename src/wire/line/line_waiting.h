@@ -46,7 +46,7 @@ struct Line::Waiting
   TimePoint heard_at;
   /// The awaited reply has begun.
   bool begun = false;
-  /// A valid frame came that nobody here had asked for.
+  /// A valid frame came that this node had not asked for.
   bool foreign = false;
   /// No further bytes will come: the beginning of a frame will not become one.
   bool over = false;

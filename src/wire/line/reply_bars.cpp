@@ -25,7 +25,7 @@ void ReplyBars::add(const std::string& shape, std::uint8_t station, const Lost& 
 {
   forgetOld(now);
   Bar& bar = bars_[shape];
-  // What was lost before the last bar ended is not coming any more.
+  // What was lost before the last bar ended will not come any more.
   bar.owed = bar.until > now ? bar.owed : 0;
   bar.station = station;
   bar.until = now + BAR_TIME;

@@ -51,7 +51,7 @@ TEST(AdapterWatch, saysWhenTheDriverDoesNotTell)
   watch.note(wire::AdapterLatency{ milliseconds(16), TIMER });
   watch.note(std::nullopt);
   EXPECT_FALSE(watch.finding());
-  EXPECT_EQ("not told by its driver", watch.text());
+  EXPECT_EQ("not reported by its driver", watch.text());
   EXPECT_EQ(Duration::zero(), watch.latency());
 }
 

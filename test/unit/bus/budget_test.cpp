@@ -220,7 +220,7 @@ TEST(Budget, saysHowLongAnOfflineInverterMayNeedToBeBackBehindAGateway)
 {
   // 5 % of 60 s are 3 s, and 5 % of 3 s are 0.15 s.
   Planned bus(1);
-  const auto told = HasSubstr("to be back");
+  const auto told = HasSubstr("may need up to");
   EXPECT_THAT(bus.texts(Level::Ok), Not(Contains(told))) << "a serial port";
   bus.configuration.bus.modbus_tcp = true;
   bus.configuration.bus.gateway_timeout = 3.0;

@@ -43,7 +43,7 @@ TEST(CommandError, aLockOfATripWantsAResetFirst)
   error.set(ERROR_LOCKED, lockedText(true), locked(true));
   EXPECT_THAT(error.text(locked(true), ""), AllOf(HasSubstr("tripped"), HasSubstr("call reset, then send 0")));
   EXPECT_EQ(error.text(locked(), ""), lockedText(false)) << "it was reset";
-  EXPECT_THAT(error.text(NONE, ""), AllOf(HasSubstr("was locked"), HasSubstr("free now")));
+  EXPECT_THAT(error.text(NONE, ""), AllOf(HasSubstr("was locked"), HasSubstr("unlocked now")));
 }
 
 TEST(CommandError, aTripAfterTheRefusalOfALockIsTold)
@@ -66,7 +66,7 @@ TEST(CommandError, whatWasAnotherMembersIsNotToldAsItsOwn)
   CommandError error;
   error.setForOther(ERROR_OFFLINE, "feed: velocity 3: the inverter is offline", 0, "", NONE);
   EXPECT_EQ(error.id(), ERROR_OFFLINE);
-  EXPECT_EQ(error.text(NONE, ""), "the group was refused: an inverter of it was offline");
+  EXPECT_EQ(error.text(NONE, ""), "the group was refused: one of its inverters was offline");
 }
 
 TEST(CommandError, anOwnReasonThatCountsLessIsToldWhileItLasts)
@@ -76,8 +76,8 @@ TEST(CommandError, anOwnReasonThatCountsLessIsToldWhileItLasts)
                     locked());
   EXPECT_EQ(error.id(), ERROR_OFFLINE) << "the group's id is shown in every member";
   EXPECT_EQ(error.text(locked(), ""),
-            "the group was refused: an inverter of it was offline; this one itself: " + lockedText(false));
-  EXPECT_EQ(error.text(NONE, ""), "the group was refused: an inverter of it was offline");
+            "the group was refused: one of its inverters was offline; this inverter itself: " + lockedText(false));
+  EXPECT_EQ(error.text(NONE, ""), "the group was refused: one of its inverters was offline");
 }
 
 TEST(CommandError, anOfflineMemberIsToldWhyAsLongAsItIs)
@@ -85,10 +85,10 @@ TEST(CommandError, anOfflineMemberIsToldWhyAsLongAsItIs)
   CommandError error;
   error.setForOther(ERROR_OUT_OF_RANGE, "feed: velocity 300 is above 50", ERROR_OFFLINE, errorText(ERROR_OFFLINE),
                     offline());
-  EXPECT_EQ(
-      error.text(offline(), "no reply in time"),
-      "the group was refused: feed: velocity 300 is above 50; this one itself: the inverter is offline: no reply in "
-      "time");
+  EXPECT_EQ(error.text(offline(), "no reply in time"),
+            "the group was refused: feed: velocity 300 is above 50; this inverter itself: the inverter is offline: no "
+            "reply in "
+            "time");
   EXPECT_THAT(error.text(NONE, ""), Not(HasSubstr("offline")));
 }
 
@@ -99,7 +99,7 @@ TEST(CommandError, aNewRefusalHasNothingOfAnOlderOne)
   error.set(ERROR_OUT_OF_RANGE, "300 is above 50", NONE);
   EXPECT_EQ(error.text(NONE, ""), "300 is above 50");
   error.setForOther(ERROR_LOCKED, "", 0, "", NONE);
-  EXPECT_EQ(error.text(NONE, ""), "the group was refused: an inverter of it was locked");
+  EXPECT_EQ(error.text(NONE, ""), "the group was refused: one of its inverters was locked");
   error.clear();
   EXPECT_EQ(error.id(), 0);
 }

@@ -55,8 +55,8 @@ TEST(DriveIdentity, modelIsAskedForAndJudgedByItsBeginning)
   DriveIdentity identity(drive, 1);
   ASSERT_TRUE(identity.next());
   EXPECT_EQ(identity.judge(settings), Identity::Unknown);
-  EXPECT_THAT(identity.text(settings), HasSubstr("not told yet"));
-  EXPECT_EQ(identity.modelText(), "not told");
+  EXPECT_THAT(identity.text(settings), HasSubstr("not reported yet"));
+  EXPECT_EQ(identity.modelText(), "not reported");
   identity.done(modelReply("3G3JE-A4"));
   EXPECT_FALSE(identity.next());
   EXPECT_EQ(identity.judge(settings), Identity::Right);
@@ -82,7 +82,7 @@ TEST(DriveIdentity, modelThatIsRefusedIsTheWrongDriveUntilItIsAskedAnew)
   refusal.error_id = 0x0401;  // CompoWay/F: no such service
   identity.done(refusal);
   EXPECT_EQ(identity.judge(settings), Identity::Wrong);
-  EXPECT_THAT(identity.text(settings), HasSubstr("its model is not to be had"));
+  EXPECT_THAT(identity.text(settings), HasSubstr("its model cannot be read"));
   identity.restart();
   EXPECT_TRUE(identity.next());
   EXPECT_EQ(identity.judge(settings), Identity::Unknown);

@@ -111,7 +111,7 @@ TEST_F(Mx2Report, aMissingPortIsToldOfTheBus)
 {
   loseExchange();
   inverter_.goOffline(wire::ERROR_PORT_LOST);
-  EXPECT_THAT(findings().front().text, AllOf(HasSubstr("told of the bus"), Not(HasSubstr("wiring"))));
+  EXPECT_THAT(findings().front().text, AllOf(HasSubstr("reported for the bus"), Not(HasSubstr("wiring"))));
   EXPECT_THAT(offlineReason(inverter_), Not(HasSubstr("since the last complete status")));
 }
 

@@ -70,7 +70,7 @@ TEST_F(LinkRecordTest, exceptionsAreInTheDrivesOwnWords)
 TEST_F(LinkRecordTest, whatAGatewaySaysIsTheGateways)
 {
   note(wire::Outcome::Timeout, 4, 0x0B);
-  EXPECT_EQ("of 4 requests 4 without a reply, says the gateway (exception 0BH)", text());
+  EXPECT_EQ("of 4 requests 4 without a reply, as the gateway reports (exception 0BH)", text());
   EXPECT_THAT(record_.advice(), HasSubstr("check supply"));
 }
 

@@ -142,7 +142,7 @@ TEST_F(Mx2Map, aDriveThatRefusesHasNone)
   EXPECT_EQ(nullptr, table_.next());
   EXPECT_TRUE(table_.refused());
   EXPECT_FALSE(table_.fits());
-  EXPECT_THAT(map_.whyNot(table_), HasSubstr("may have none"));
+  EXPECT_THAT(map_.whyNot(table_), HasSubstr("may have no map"));
 }
 
 TEST_F(Mx2Map, nobodyReadsItUnasked)
@@ -317,7 +317,7 @@ TEST_F(Mx2Map, inOtherUseIsToldOnceWithBothTables)
   EXPECT_EQ("", map_.takeRefusal(table_));
   MapUse configuring(mx2_, configuring_);
   EXPECT_THAT(configuring.takeWrites(table_, true), IsEmpty());
-  EXPECT_THAT(configuring.takeRefusal(table_), HasSubstr("it has P201 = 0x4001; wanted is P201 = 0x1005"));
+  EXPECT_THAT(configuring.takeRefusal(table_), HasSubstr("it has P201 = 0x4001; wanted: P201 = 0x1005"));
   EXPECT_EQ("", configuring.takeRefusal(table_));
 }
 }  // namespace

@@ -292,7 +292,7 @@ TEST(Vfs15Motion, afterALostFrameOfAReversalTheMotorMustBeSeenRunning)
   movement.doubtful(*turn, at(310));
   EXPECT_FALSE(status(TURNS, 315).told_after_turn) << "asked for before it got lost";
   EXPECT_TRUE(status(TURNS, 330).told_after_turn);
-  EXPECT_THAT(status(words(true, false), 340).judgement.stop_reason, HasSubstr("turn round"));
+  EXPECT_THAT(status(words(true, false), 340).judgement.stop_reason, HasSubstr("to reverse"));
 }
 
 // --- commanded against actual ----------------------------------------------------------------------------------------
@@ -333,7 +333,7 @@ TEST_F(Mx2Motion, anotherSpeedThanCommandedIsAWarningOnceTheDriveSaysThatItIsThe
   EXPECT_THAT(watch_.warnings(at(5000)), IsEmpty()) << "it accelerates";
   slow.at_speed = true;
   status(slow, 5100);
-  EXPECT_THAT(watch_.warnings(at(7100)), ElementsAre(HasSubstr("another speed")));
+  EXPECT_THAT(watch_.warnings(at(7100)), ElementsAre(HasSubstr("a speed other than commanded")));
 }
 }  // namespace
 }  // namespace bus

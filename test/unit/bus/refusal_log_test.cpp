@@ -26,7 +26,7 @@ TEST(RefusalLog, tellsTheFirstOfItsKindAtOnceAndTheOthersInOneLine)
     log.refused(at(time), 0, ERROR_LOCKED, "line " + std::to_string(time));
     EXPECT_THAT(log.takeLines(at(time)), SizeIs(time == 0 ? 1U : 0U));
   }
-  EXPECT_THAT(log.takeLines(at(5000)), ElementsAre("line 4950 (the last of 99 since the line before)"));
+  EXPECT_THAT(log.takeLines(at(5000)), ElementsAre("line 4950 (the last of 99 since the previous line)"));
   EXPECT_THAT(log.takeLines(at(20000)), IsEmpty());
 }
 

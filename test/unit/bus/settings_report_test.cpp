@@ -64,7 +64,7 @@ TEST(SettingsReport, valuesSayWhatIsKnownAndWhyNot)
   {
     refused.done(exception(0x83, 0x02));
   }
-  EXPECT_THAT(settingValues(mx2, refused), Contains(Pair(StartsWith("C077"), "the drive refuses to tell")));
+  EXPECT_THAT(settingValues(mx2, refused), Contains(Pair(StartsWith("C077"), "the drive refuses the read")));
 }
 
 TEST(SettingsReport, whatIsReadUnderCommandSaysSo)

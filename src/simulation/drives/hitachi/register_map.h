@@ -15,7 +15,7 @@ namespace inverter_bus
 {
 namespace simulation
 {
-/// The Modbus mapping of an MX2: up to ten external register numbers, each of which stands for one internal register.
+/// The Modbus mapping of an MX2: up to ten external register numbers, each of which means one internal register.
 ///
 /// From the manuals (I585 p. 440, I570 p. 379, Hitachi WJ200 p. 532-569, WJ-C1 p. 354-357): P200 switches it on;
 /// P201-P210 are the external numbers as printed, 0000h: slot not used; P211-P220 say signed or not; P221-P230 are the
@@ -44,7 +44,7 @@ public:
   bool on() const;
   /// \p number is an external one, whatever its slot is worth.
   bool covers(std::uint16_t number) const;
-  /// Null where the drive can't use the slot of \p number: no internal register, or the number stands in two slots.
+  /// Null where the drive can't use the slot of \p number: no internal register, or the number is in two slots.
   const Slot* slot(std::uint16_t number) const;
 
 private:

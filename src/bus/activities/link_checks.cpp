@@ -57,7 +57,7 @@ void LinkChecks::note(const wire::Reply& reply)
   if (bus_.link.wasSilent(reply.finished_at))
   {
     // What probes have cost meanwhile has delayed nobody.
-    bus_.scheduler.restartProbes(reply.finished_at);
+    bus_.scheduler.probeAccount().restart(reply.finished_at);
   }
   bus_.link.answered();
 }

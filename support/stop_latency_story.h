@@ -66,6 +66,7 @@ private:
   void askForParameter();
   void kill();
   bool stopOne();
+  std::size_t anyOnline();
   unsigned living() const;
   double chance();
 

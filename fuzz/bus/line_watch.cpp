@@ -114,7 +114,8 @@ void LineWatch::endExchange(TimePoint now)
   checks_.cut_waits.ended(now);
   checks_.liveness.ended();
   checks_.turns.ended();
-  checks_.bounded_velocities.ended();
+  checks_.stops.ended();
+  checks_.bounded_velocities.ended(now);
   checks_.supervision.ended(now);
   checks_.probes.ended(now);
   checks_.slow_reads.ended(now);

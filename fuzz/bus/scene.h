@@ -23,6 +23,9 @@ enum class Brand
   JE
 };
 
+/// The longest that any profile gives its drive besides the time-out.
+constexpr double PROFILE_DELAY_S = 0.01;
+
 /// What a player and a checker must know of one inverter, as the scan list below says it.
 struct InverterFacts
 {
@@ -50,6 +53,12 @@ struct InverterFacts
   std::string fixed_parameter;
   double fixed_value = 0.0;
   std::string free_parameter;
+
+  /// The longest wait for a reply, from the request's last byte.
+  Duration fullWait() const
+  {
+    return seconds(response_timeout + own_delay + PROFILE_DELAY_S);
+  }
 };
 
 /// A bus and its drives: one scan list for the driver and for the simulation.

@@ -92,6 +92,7 @@ void UserWatch::takeRunOff(TimePoint now, std::size_t index)
 {
   checks_.zeros.commanded(now, index);
   checks_.cut_waits.zeroCame();
+  checks_.bounded_velocities.wantedOff();
   checks_.refusals.forget(index);
   checks_.forbid(now, index);
 }
@@ -128,6 +129,7 @@ void UserWatch::stopRequested(TimePoint now, std::optional<std::size_t> index)
     checks_.zeros.drop(one);
     checks_.stops.requested(now, one);
     checks_.cut_waits.asked(now, one);
+    checks_.bounded_velocities.wantedOff();
     checks_.recorder.stopRequested(one);
   }
 }

@@ -255,9 +255,11 @@ TEST(StopCuts, theNextFrameOfThatStopIsRepeatedAtOnceWithItsFullWait)
   bus.settleIn();
   bus.run(3.0);
   bus.world("belt_1 offline");
-  bus.world("belt_2 lost_request count 1");
   bus.clearFrames();
-  onFrame(bus, "01 ", 0.005, [&] { bus.stop(1); });
+  onFrame(bus, "01 ", 0.005, [&] {
+    bus.world("belt_2 lost_request count 1");
+    bus.stop(1);
+  });
   bus.run(0.3);
   std::vector<TimePoint> stops;
   std::vector<std::string> heads;

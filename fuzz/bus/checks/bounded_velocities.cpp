@@ -15,8 +15,9 @@ BoundedVelocities::BoundedVelocities(const Observed& observed)
 {
 }
 
-void BoundedVelocities::check(TimePoint now) const
+void BoundedVelocities::check(TimePoint now)
 {
+  wanted_off_ = false;
   const RequestFacts& facts = observed_.exchange.facts;
   if (!facts.inverter || !facts.commands() || facts.stop || observed_.shutting_down)
   {
@@ -37,16 +38,24 @@ void BoundedVelocities::answered(std::size_t index)
   lost_[index] = observed_.exchange.facts.commands() ? 0 : lost_[index];
 }
 
-void BoundedVelocities::ended()
+void BoundedVelocities::wantedOff()
 {
-  const RequestFacts& facts = observed_.exchange.facts;
+  wanted_off_ = true;
+}
+
+void BoundedVelocities::ended(TimePoint now)
+{
+  const Exchange& exchange = observed_.exchange;
+  const RequestFacts& facts = exchange.facts;
   // Words that a refresh repeats are no velocity's.
-  // Nor is one a try that a stop has cut.
-  if (facts.inverter && !observed_.exchange.answered && !observed_.exchange.cut && facts.commands() && !facts.stop &&
-      !facts.with_read)
+  if (!facts.inverter || exchange.answered || !facts.commands() || facts.stop || facts.with_read)
   {
-    ++lost_[*facts.inverter];
+    return;
   }
+  // Nor is one a try that a stop has cut (8.4), also in the time that the drive's own delay adds to the time-out.
+  const Duration full = observed_.scene.inverters[*facts.inverter].fullWait();
+  const bool cut = exchange.cut || (wanted_off_ && now - exchange.request_end < full);
+  lost_[*facts.inverter] += cut ? 0 : 1;
 }
 
 void BoundedVelocities::forbidden(std::size_t index)

@@ -21,9 +21,11 @@ public:
   explicit BoundedVelocities(const Observed& observed);
 
   /// A request is about to go.
-  void check(TimePoint now) const;
+  void check(TimePoint now);
   void answered(std::size_t index);
-  void ended();
+  /// Something wants RUN off: it may cut the exchange in flight.
+  void wantedOff();
+  void ended(TimePoint now);
   /// The order is void.
   void forbidden(std::size_t index);
 
@@ -31,6 +33,7 @@ private:
   const Observed& observed_;
   /// Frames of velocities in a row that were not answered.
   std::vector<int> lost_;
+  bool wanted_off_ = false;
 };
 }  // namespace checks
 }  // namespace fuzz

@@ -18,7 +18,6 @@ constexpr double SHORTEST_S = 0.015;
 constexpr int TIMES_THE_LONGEST = 3;
 constexpr double SHORTEST_PAUSE_S = 0.005;
 constexpr double FIFO_CHARACTERS = 18.0;
-constexpr double PROFILE_DELAY_S = 0.01;
 // Fewer than the 256 of the rule: which replies the node has counted is not quite known.
 constexpr std::size_t REPLIES = 200;
 constexpr double TOLERANCE_S = 0.001;
@@ -73,11 +72,18 @@ bool CutWaits::isLasting(const Exchange& exchange) const
   return facts.stop || facts.reset || (!hitachi && isOtherWrite(facts));
 }
 
+/// A frequency that a 3G3JE keeps in its EEPROM unless it was put into RAM mode since it was switched on.
+bool CutWaits::mayWear(const Exchange& exchange) const
+{
+  const RequestFacts& facts = exchange.facts;
+  return observed_.scene.inverters[*facts.inverter].brand == Brand::JE && facts.set_hertz.has_value();
+}
+
 /// It is waited for no longer than 8.4 says when a stop comes.
 bool CutWaits::mayBeCut(const Exchange& exchange) const
 {
   const RequestFacts& facts = exchange.facts;
-  if (!facts.inverter || !facts.expects_reply || isLasting(exchange) || isOtherWrite(facts))
+  if (!facts.inverter || !facts.expects_reply || isLasting(exchange) || isOtherWrite(facts) || mayWear(exchange))
   {
     return false;
   }

@@ -53,6 +53,7 @@ private:
 
   bool isLasting(const Exchange& exchange) const;
   bool mayBeCut(const Exchange& exchange) const;
+  bool mayWear(const Exchange& exchange) const;
   bool insists() const;
   Duration shortest(std::size_t index) const;
   Duration longest(std::size_t index) const;

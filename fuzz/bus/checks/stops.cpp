@@ -66,7 +66,8 @@ void Stops::checkNextFrame(TimePoint now) const
   for (std::size_t index = 0; index < lanes_.size(); ++index)
   {
     const Lane& lane = lanes_[index];
-    waiting = lane.due && !observed_.decidedBefore(now, *lane.due) && observed_.online(index) ? index : waiting;
+    const bool due = lane.due && !observed_.decidedBefore(now, *lane.due) && now >= lane.run_until;
+    waiting = due && observed_.online(index) ? index : waiting;
   }
   if (waiting == lanes_.size())
   {
@@ -107,6 +108,17 @@ void Stops::sent(TimePoint now)
   lane.due.reset();
   const bool soon = now - observed_.inverters[*facts.inverter].stop.sent < seconds(FLOOD_PAUSE_S);
   lane.in_a_row = soon ? lane.in_a_row + 1 : 1;
+}
+
+void Stops::ended()
+{
+  const Exchange& exchange = observed_.exchange;
+  if (exchange.facts.inverter && exchange.facts.run)
+  {
+    const InverterFacts& inverter = observed_.scene.inverters[*exchange.facts.inverter];
+    lanes_[*exchange.facts.inverter].run_until =
+        exchange.answered ? TimePoint() : exchange.request_end + inverter.fullWait();
+  }
 }
 
 void Stops::measure(TimePoint now, TimePoint due, TimePoint sent_before)

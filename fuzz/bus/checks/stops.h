@@ -33,6 +33,8 @@ public:
   void checkNextFrame(TimePoint now) const;
   /// The request that goes may be a stop.
   void sent(TimePoint now);
+  /// An exchange is over.
+  void ended();
   void checkOverdue(TimePoint now, std::size_t index) const;
 
   /// Not yet sent.
@@ -45,6 +47,8 @@ private:
   {
     std::optional<TimePoint> due;
     bool measured = false;
+    /// The time of its own RUN, which another inverter's stop may have given up: its own stop waits for it (8.4).
+    TimePoint run_until;
     /// Stops in a row since its last RUN, none of them long after the one before.
     unsigned in_a_row = 0;
   };

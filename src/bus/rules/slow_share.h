@@ -32,10 +32,10 @@ public:
     Duration interval{ 0 };
     /// The longest exchange that counts.
     Duration longest{ 0 };
-    /// Silence of the line before each of them.
-    Duration gap{ 0 };
     /// A status cycle with its pause.
     Duration cycle{ 0 };
+    /// Silence of the line before each exchange that counts.
+    Duration gap{ 0 };
   };
 
   explicit SlowShare(const Settings& settings);

@@ -138,11 +138,10 @@ Pick Coordinator::pick(TimePoint now)
 
 std::optional<InFlight> Coordinator::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
-  const Inverter& inverter = *bus_.inverters[pick.inverter];
   switch (pick.what)
   {
     case Pick::What::Stop:
-      return activities_.stops.compose(pick, pick.probe ? activities_.probes.timeout(inverter, line) : Duration{ 0 });
+      return activities_.probes.limit(now, activities_.stops.compose(pick), line);
     case Pick::What::Velocity:
       return activities_.velocities.compose(now, pick, line);
     case Pick::What::Service:
@@ -153,7 +152,7 @@ std::optional<InFlight> Coordinator::compose(TimePoint now, const Pick& pick, co
     case Pick::What::Setting:
       return activities_.settings.compose(pick);
     case Pick::What::Probe:
-      return activities_.probes.compose(pick, line);
+      return activities_.probes.compose(now, pick, line);
     case Pick::What::Release:
       return activities_.shutdown.composeRelease(pick);
     default:
@@ -265,7 +264,12 @@ void Coordinator::noteReply(const InFlight& current, const wire::Reply& reply)
   }
   if (current.request.expects_reply && isAnswered(reply))
   {
+    const bool silent = inverter.link.silent();
     inverter.link.answered(reply);
+    if (silent)
+    {
+      bus_.scheduler.turnSoon(inverter.index);
+    }
     inverter.feeding.answered(current.request, reply.finished_at);
   }
   // An unanswered probe says nothing about the loop-back: the drive is away.

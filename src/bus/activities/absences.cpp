@@ -69,7 +69,7 @@ void Absences::failTrial(TimePoint now, Inverter& inverter, std::uint16_t error_
 {
   if (inverter.link.onTrial() && !bus_.shutting_down)
   {
-    bus_.scheduler.chargeProbe(now, inverter.endTrial(error_id));
+    bus_.scheduler.probeAccount().charge(now, inverter.endTrial(error_id));
   }
 }
 

@@ -99,7 +99,7 @@ Gate GatewayTraffic::gate(TimePoint now)
   }
   if (const auto kept = bus_.gateway.tick(now))
   {
-    bus_.scheduler.chargeProbe(now, *kept);
+    bus_.scheduler.probeAccount().charge(now, *kept);
   }
   tell();
   gate.stops_only = !bus_.gateway.free(now);

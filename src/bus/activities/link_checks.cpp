@@ -57,7 +57,7 @@ void LinkChecks::note(const wire::Reply& reply)
   if (bus_.link.wasSilent(reply.finished_at))
   {
     // The cost of probes meanwhile has delayed no other exchange.
-    bus_.scheduler.restartProbes(reply.finished_at);
+    bus_.scheduler.probeAccount().restart(reply.finished_at);
   }
   bus_.link.answered();
 }

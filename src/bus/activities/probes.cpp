@@ -10,12 +10,8 @@ namespace bus
 {
 namespace
 {
-// Contract, rule 3.7: an inverter is found again within 3 s; with a little margin.
-constexpr double PROBE_ROUND_S = 2.7;
-constexpr double SHORTEST_PROBE_TIMEOUT_S = 0.015;
-// Every so many probes waits the whole response_timeout, for a drive that has become slow.
-constexpr std::size_t FULL_PROBE_EVERY = 4;
-constexpr std::size_t FULL_PROBE_EVERY_OF_MANY = 16;
+// Contract, rule 3.7: an inverter is back within 3 s; what is left is for its first status.
+constexpr double PROBE_ROUND_S = 2.6;
 }  // namespace
 
 Probes::Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stops)
@@ -23,21 +19,40 @@ Probes::Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stop
 {
 }
 
-std::size_t Probes::silentInverters() const
+std::vector<std::size_t> Probes::silentInverters() const
 {
-  return static_cast<std::size_t>(
-      std::count_if(bus_.inverters.begin(), bus_.inverters.end(),
-                    [](const std::unique_ptr<Inverter>& inverter) { return inverter->link.silent(); }));
+  std::vector<std::size_t> silent;
+  for (const auto& inverter : bus_.inverters)
+  {
+    if (inverter->link.silent())
+    {
+      silent.push_back(inverter->index);
+    }
+  }
+  return silent;
 }
 
-InFlight Probes::compose(const Pick& pick, const LineView& line)
+InFlight Probes::compose(TimePoint now, const Pick& pick, const LineView& line)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   InFlight current = exchangeFor(pick);
+  const Wait wait = this->wait(now, inverter, line);
+  current.pick.in_turn = wait.in_turn;
   current.loopback = byLoopback(inverter) && inverter.drive.loopback(inverter.config.node, 0).has_value();
-  current.request = request(inverter, ++bus_.loopback_number, timeout(inverter, line));
+  current.request = request(inverter, ++bus_.loopback_number, wait.timeout);
   inverter.link.probeSent();
   return current;
+}
+
+InFlight Probes::limit(TimePoint now, InFlight stop, const LineView& line) const
+{
+  if (stop.pick.probe)
+  {
+    const Wait wait = this->wait(now, *bus_.inverters[stop.inverter], line);
+    stop.request.response_timeout = std::min(stop.request.response_timeout, wait.timeout);
+    stop.pick.in_turn = wait.in_turn;
+  }
+  return stop;
 }
 
 bool Probes::byLoopback(const Inverter& inverter) const
@@ -65,28 +80,30 @@ void Probes::ended(const InFlight& current, const wire::Reply& reply)
 }
 
 /// Probes share 5 % of the bus time, and each dead inverter shall be asked every 3 s: the more are dead, the shorter each
-/// one may be waited for, but never shorter than the inverter has ever needed. Its reply still counts when it comes late.
-Duration Probes::timeout(const Inverter& inverter, const LineView& line) const
+/// one may be waited for, but never shorter than the inverter has ever needed. Its reply still counts when it comes late;
+/// for one whose late replies are lost among those of others there is a long wait now and then.
+Probes::Wait Probes::wait(TimePoint now, const Inverter& inverter, const LineView& line) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
-  const auto dead = silentInverters();
-  // Staggered by index, so that no round has more than a few full ones.
-  const std::size_t every = dead > 1 ? FULL_PROBE_EVERY_OF_MANY : FULL_PROBE_EVERY;
-  if ((inverter.link.probes() + inverter.index) % every == every - 1)
+  const Duration brief = shortTimeout(inverter, line);
+  const bool may_wait = bus_.scheduler.probeAccount().mayWaitLong(now, inverter.index, silentInverters());
+  Wait wait;
+  wait.timeout = may_wait ? full : brief;
+  if (brief < wait.timeout)
   {
-    return full;
+    wait.in_turn = line.costUnanswered(request(inverter, 0, brief));
   }
-  return shortTimeout(inverter, line);
+  return wait;
 }
 
 Duration Probes::shortTimeout(const Inverter& inverter, const LineView& line) const
 {
   const Duration full = seconds(inverter.config.response_timeout);
-  const auto dead = silentInverters();
+  const std::size_t dead = silentInverters().size();
   const wire::Request bare = request(inverter, 0, Duration::zero());
-  const Duration share = seconds(PROBE_ROUND_S * PROBE_SHARE / static_cast<double>(std::max<std::size_t>(dead, 1)));
-  const Duration needed = inverter.link.slowestReply() + inverter.link.slowestReply() / 2;
-  const Duration least = std::max(needed, seconds(SHORTEST_PROBE_TIMEOUT_S));
+  const Duration share =
+      seconds(PROBE_ROUND_S * PROBE_TURNS_SHARE / static_cast<double>(std::max<std::size_t>(dead, 1)));
+  const Duration least = leastProbeTimeout(inverter.link.slowestReply(), bare.reply_delay);
   return std::min(full, std::max(least, share - line.costUnanswered(bare)));
 }
 
@@ -101,7 +118,7 @@ void Probes::lateReply(TimePoint now, const wire::LateReply& late)
   const bool alone = !bus_.gateway.active() || (request && request->alone);
   if (request && request->alone && request->probe)
   {
-    bus_.scheduler.chargeProbe(now, bus_.gateway.block());
+    bus_.scheduler.probeAccount().charge(now, bus_.gateway.block());
   }
   if (request && request->risk == GatewayRisk::Stop)
   {
@@ -123,8 +140,13 @@ void Probes::lateReply(TimePoint now, const wire::LateReply& late)
       inverter->record.noteLate();
     }
     // A probe that was given up early: worth asking for the status, at the probes' cost.
+    const bool silent = inverter->link.silent();
     inverter->link.beginTrial(
         std::min(late.delay.value_or(Duration::zero()), seconds(inverter->config.response_timeout)));
+    if (silent && inverter->link.onTrial())
+    {
+      bus_.scheduler.turnSoon(inverter->index);
+    }
   }
 }
 }  // namespace bus

@@ -3,6 +3,8 @@
 #ifndef INVERTER_BUS_BUS_PROBES_H
 #define INVERTER_BUS_BUS_PROBES_H
 
+#include <vector>
+
 #include "bus/activities/stops.h"
 #include "bus/line_view.h"
 
@@ -16,17 +18,25 @@ class Probes
 public:
   Probes(BusState& bus, Turns& turns, GatewayTraffic& traffic, Stops& stops);
 
-  InFlight compose(const Pick& pick, const LineView& line);
+  /// How long a probe waits for its reply, and how much of what that costs the next probe waits for.
+  struct Wait
+  {
+    Duration timeout{ 0 };
+    Duration in_turn = Duration::max();
+  };
+
+  InFlight compose(TimePoint now, const Pick& pick, const LineView& line);
+  /// The frame of a stop waits no longer than a probe if it is one.
+  InFlight limit(TimePoint now, InFlight stop, const LineView& line) const;
   void ended(const InFlight& current, const wire::Reply& reply);
-  /// How long a probe of this inverter may wait for the reply.
-  Duration timeout(const Inverter& inverter, const LineView& line) const;
-  /// The same without those that wait for a drive that has become slow.
+  Wait wait(TimePoint now, const Inverter& inverter, const LineView& line) const;
+  /// The time-out of one that doesn't wait for a drive that has become slow.
   Duration shortTimeout(const Inverter& inverter, const LineView& line) const;
   /// A reply that came after its time-out: its station is alive.
   void lateReply(TimePoint now, const wire::LateReply& late);
 
 private:
-  std::size_t silentInverters() const;
+  std::vector<std::size_t> silentInverters() const;
   /// The next one is a loop-back, if the drive's profile has one.
   bool byLoopback(const Inverter& inverter) const;
   /// The question that shows whether an offline drive is back.

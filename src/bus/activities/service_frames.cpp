@@ -139,7 +139,7 @@ void Services::noteEnd(Inverter& inverter, const Job& job, const Answer& result)
   {
     bus_.outbox.log(result.success ? Level::Ok : Level::Warn,
                     inverter.config.name + ": " + aftermath.logged_as + ": " + result.message);
-    inverter.settings.rereadAll();
+    inverter.settings.restart(false);
   }
 }
 

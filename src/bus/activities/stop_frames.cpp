@@ -71,7 +71,7 @@ std::optional<InFlight> Stops::composeBroadcast(TimePoint now)
 }
 
 /// The next frame of the stop of one inverter.
-InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
+InFlight Stops::compose(const Pick& pick)
 {
   Inverter& inverter = *bus_.inverters[pick.inverter];
   if (bus_.shutting_down && inverter.link.silent() && inverter.stop.written())
@@ -81,10 +81,6 @@ InFlight Stops::compose(const Pick& pick, Duration probe_timeout)
   }
   InFlight current = exchangeFor(pick);
   current.request = inverter.prepared(inverter.stop.next());
-  if (pick.probe)
-  {
-    current.request.response_timeout = std::min(current.request.response_timeout, probe_timeout);
-  }
   return current;
 }
 

@@ -38,7 +38,7 @@ public:
   // --- exchanges ------------------------------------------------------------------------------------------------------
   std::optional<InFlight> composeBroadcast(TimePoint now);
   /// \p probe_timeout how long a probe of this inverter may wait.
-  InFlight compose(const Pick& pick, Duration probe_timeout);
+  InFlight compose(const Pick& pick);
   void sent(TimePoint now, const InFlight& current);
   Ending ended(const InFlight& current, const wire::Reply& reply);
   /// Acceptance to the first byte, or behind a gateway to the answer.

@@ -105,7 +105,9 @@ void Turns::finish(const InFlight& current, const wire::Reply& reply, bool more)
   bus_.scheduler.done(current.pick, countedFrom(reply), reply.finished_at, more, isAnswered(reply));
   if (current.pick.probe && reply.outcome != wire::Outcome::Ok)
   {
-    bus_.scheduler.chargeProbe(reply.finished_at, price(current, reply));
+    // What a gateway was kept for is no wait of this probe's own.
+    const Duration most = reply.gateway_code != 0 ? Duration::max() : current.pick.in_turn;
+    bus_.scheduler.probeAccount().charge(reply.finished_at, std::min(price(current, reply), most));
   }
 }
 

@@ -18,17 +18,15 @@ DriveSettings::DriveSettings(const drive::Drive& drive, std::uint8_t station, bo
 {
 }
 
-void DriveSettings::restart()
-{
-  identity_.restart();
-  rereadAll();
-}
-
-void DriveSettings::rereadAll()
+void DriveSettings::restart(bool perhaps_another)
 {
   settings_.restart();
   connect_.restart();
   map_.restart();
+  if (perhaps_another)
+  {
+    identity_.restart();
+  }
 }
 
 void DriveSettings::connectAgain()

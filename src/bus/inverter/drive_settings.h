@@ -30,15 +30,10 @@ public:
   /// \p map_wanted: what the drive has in its register map is of interest.
   DriveSettings(const drive::Drive& drive, std::uint8_t station, bool map_wanted = false);
 
-  /// Settles everything again (the drive has come back).
-  void restart();
-<<<<<<< HEAD
-  /// Many of its parameters were written: all are read again. It is the same drive, so that nothing is locked meanwhile.
-  void rereadAll();
-  /// The drive has forgotten what it was told: the sequence `connect` goes again.
-=======
+  /// Settles everything again. \p perhaps_another: the drive has come back, and what it is counts no more until it is read;
+  /// otherwise many of its parameters were written, and nothing is locked meanwhile.
+  void restart(bool perhaps_another = true);
   /// The drive has forgotten what it was sent: the sequence `connect` goes again.
->>>>>>> h/lang
   void connectAgain();
   /// The drive may have been left in its setup area: it is led out of it before anything else.
   void leaveSetup();

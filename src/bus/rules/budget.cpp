@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bus/rules/reply_times.h"
-#include "bus/rules/scheduler.h"
 #include "util/text.h"
 
 namespace inverter_bus
@@ -14,9 +13,6 @@ namespace bus
 {
 namespace
 {
-// Contract, rule 3.7: offline inverters are found again within this time, where a probe costs no more than its share of it.
-constexpr double RETURN_S = 3.0;
-constexpr double SHORT_BLOCK_S = PROBE_SHARE * RETURN_S;
 constexpr double STOP_SLACK_CHARACTERS = 64.0;
 // Contract, 8.3: slow values that are read less often are worth a warning.
 constexpr double LONG_SLOW_PERIOD_S = 5.0;
@@ -319,28 +315,6 @@ std::string Budget::behindOthers() const
                    " behind another stop, a reset or a write to an EEPROM that is not answered";
 }
 
-Duration Budget::longestReturn(Duration block, std::size_t offline)
-{
-  const double each = std::max(toSeconds(block) / PROBE_SHARE, PROBE_PERIOD_S);
-  return seconds(std::max(RETURN_S, static_cast<double>(std::max<std::size_t>(offline, 1)) * each));
-}
-
-/// Contract, 8.8: what the probes' share means for 3.7 where the gateway is blocked for long.
-std::optional<Finding> Budget::returnBehindGateway() const
-{
-  const Duration block = seconds(configuration_.bus.gateway_timeout);
-  if (!configuration_.bus.modbus_tcp || block <= seconds(SHORT_BLOCK_S))
-  {
-    return std::nullopt;
-  }
-  return Finding{ Level::Ok,
-                  "an inverter that was offline may need up to " + util::durationText(longestReturn(block, 1)) +
-                      " (times the number of those that are offline) to return, if a silent station blocks the "
-                      "gateway for gateway_timeout (" +
-                      util::durationText(block) + "); " + util::durationText(longestReturn({}, 1)) +
-                      " if it does so for " + util::durationText(seconds(SHORT_BLOCK_S)) + " at most" };
-}
-
 /// Contract, 8.3: the share is small; fresher values are had by leaving others out.
 std::optional<Finding> Budget::slowFinding() const
 {
@@ -364,7 +338,8 @@ std::vector<Finding> Budget::findings() const
                        "an inverter " +
                        util::millisecondsText(longestGap()) + ", slow values " +
                        (configuration_.bus.slow_interval > 0.0 ? "every " + util::durationText(slowPeriod())
-                                                               : "never (slow_interval is 0)") });
+                                                               : "never (slow_interval is 0)") +
+                       returnText() });
   for (const auto& finding : { slowFinding(), returnBehindGateway() })
   {
     if (finding)

@@ -62,6 +62,9 @@ public:
   Duration slowPeriod() const;
   /// The longest one that a stop cuts as soon as it may: its reply begins at the last moment, and has a pause in it.
   Duration longestCutExchange() const;
+  /// How long an inverter that answers again may stay offline on a serial line while \p offline of the slowest to probe are
+  /// (itself included): their probes take turns. What the wire allows, once they were heard.
+  Duration returnTime(std::size_t offline) const;
   Figures figures() const;
 
   /// Lines for the log: the figures, and WARN where a time-out can't be met.
@@ -86,6 +89,7 @@ private:
   Duration velocityUnit(std::size_t index) const;
   std::vector<wire::Request> requests(std::size_t index) const;
   std::string behindOthers() const;
+  std::string returnText() const;
   std::optional<Finding> returnBehindGateway() const;
 
   const Configuration& configuration_;

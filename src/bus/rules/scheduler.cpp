@@ -34,7 +34,7 @@ Scheduler::Scheduler(const Settings& settings)
   , stop_pending_(settings.inverters, false)
   , last_stop_exchange_(settings.inverters, 0)
   , silent_at_deadline_(settings.inverters, 0)
-  , last_probe_(settings.inverters)
+  , probe_account_(settings.inverters, settings.probe_share)
 {
 }
 
@@ -401,7 +401,7 @@ std::optional<Pick> Scheduler::pickDeadline(TimePoint now, const std::vector<Inv
 
 std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<InverterView>& views) const
 {
-  if (now < next_probe_)
+  if (now < probe_account_.opensAt())
   {
     return std::nullopt;
   }
@@ -422,7 +422,7 @@ std::optional<Pick> Scheduler::pickProbe(TimePoint now, const std::vector<Invert
 
 bool Scheduler::mayProbe(TimePoint now, const InverterView& view, std::size_t index) const
 {
-  const bool rested = last_probe_[index] == TimePoint() || now - last_probe_[index] >= seconds(PROBE_PERIOD_S);
+  const bool rested = probe_account_.opensAt(index) <= now;
   const bool allowed = view.stop_pending ? view.stop_not_before <= now : bare_probes_;
   return view.offline && view.refresh_not_before <= now && rested && allowed;
 }
@@ -544,13 +544,13 @@ Pick Scheduler::nothing(TimePoint now, const std::vector<InverterView>& views) c
     }
   };
   wake_at(pause_until_);
-  wake_at(next_probe_);
+  wake_at(probe_account_.opensAt());
   for (std::size_t index = 0; index < views.size(); ++index)
   {
     const InverterView& view = views[index];
     wake_at(view.refresh_not_before);
     wake_at(view.stop_pending ? view.stop_not_before : TimePoint());
-    wake_at(view.offline ? last_probe_[index] + seconds(PROBE_PERIOD_S) : TimePoint());
+    wake_at(view.offline ? probe_account_.opensAt(index) : TimePoint());
     if (view.serve_by)
     {
       wake_at(*view.serve_by);
@@ -570,8 +570,7 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
   if (pick.probe)
   {
     probe_cursor_ = pick.inverter + 1;
-    last_probe_[pick.inverter] = end;
-    chargeProbe(end, answered ? Duration::zero() : end - start);
+    probe_account_.ended(end, pick.inverter, answered ? Duration::zero() : end - start, pick.in_turn);
   }
   last_inverter_ = pick.what == Pick::What::Stop ? std::nullopt : std::optional<std::size_t>(pick.inverter);
   last_lost_ = last_inverter_ && !answered;
@@ -595,10 +594,9 @@ void Scheduler::done(const Pick& pick, TimePoint start, TimePoint end, bool more
   }
 }
 
-void Scheduler::chargeProbe(TimePoint now, Duration cost)
+ProbeAccount& Scheduler::probeAccount()
 {
-  next_probe_ =
-      std::max(next_probe_, now + std::chrono::duration_cast<Duration>(cost * (1.0 / settings_.probe_share - 1.0)));
+  return probe_account_;
 }
 
 void Scheduler::doneCommand(const Pick& pick, bool more)
@@ -686,14 +684,8 @@ void Scheduler::restartCycle(TimePoint now, bool probes_at_once)
   pause_until_ = now;
   if (probes_at_once)
   {
-    restartProbes(now);
+    probe_account_.restart(now);
   }
-}
-
-void Scheduler::restartProbes(TimePoint now)
-{
-  next_probe_ = now;
-  std::fill(last_probe_.begin(), last_probe_.end(), TimePoint());
 }
 }  // namespace bus
 }  // namespace inverter_bus

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "inverter_bus/util/clock.h"
+#include "bus/rules/probe_account.h"
 
 namespace inverter_bus
 {
@@ -26,11 +26,6 @@ enum class CommandKind
 };
 
 using CommandId = std::uint64_t;
-
-/// Contract, rule 3.7: the share of the time that all probes of offline inverters take together.
-constexpr double PROBE_SHARE = 0.05;
-/// Contract, 8.8: [s], each offline inverter at most so often.
-constexpr double PROBE_PERIOD_S = 0.5;
 
 /// A command that waits for its next exchange.
 struct WaitingCommand
@@ -121,6 +116,8 @@ struct Pick
   CommandId command = 0;
   /// Paid from the probes' share of the bus time.
   bool probe = false;
+  /// How much of its cost the next probe waits for; what it takes beyond that is a long wait (ProbeAccount).
+  Duration in_turn = Duration::max();
   /// Goes before its turn, because the drive's own time-out is near.
   bool deadline = false;
   TimePoint wake;
@@ -182,6 +179,8 @@ public:
 
   /// The next read of this inverter's refresh goes before everything but stops, once.
   void readSoon(std::size_t inverter);
+  /// This inverter takes its turn in the cycle next, with all that its refresh needs; the cycle goes on behind it.
+  void turnSoon(std::size_t inverter);
 
   // --- decisions ----------------------------------------------------------------------------------------------------
   /// The next exchange, or when to ask again.
@@ -192,8 +191,8 @@ public:
   /// \param answered a reply came (a probe that is answered costs nothing of the probes' share).
   void done(const Pick& pick, TimePoint start, TimePoint end, bool more, bool answered);
 
-  /// What a probe of \p start has cost after all, when that shows only later: a gateway that was kept busy by it.
-  void chargeProbe(TimePoint now, Duration cost);
+  /// What probes have cost: done() charges it, and whoever learns only later that one has cost more.
+  ProbeAccount& probeAccount();
 
   // --- cycle --------------------------------------------------------------------------------------------------------
   /// Complete status cycles so far.
@@ -206,8 +205,6 @@ public:
   std::uint64_t exchanges() const;
   /// The whole bus starts afresh (port opened again). \p probes_at_once: what probes have cost before doesn't count.
   void restartCycle(TimePoint now, bool probes_at_once = true);
-  /// What probes have cost before doesn't count.
-  void restartProbes(TimePoint now);
 
 private:
   struct Ticket
@@ -296,7 +293,8 @@ private:
   unsigned deadlines_in_a_row_ = 0;
   /// Refreshes that a deadline began and that need another read.
   std::deque<std::size_t> half_refreshed_;
-  /// Those whose turn in the cycle came just after an exchange of theirs was lost: they take it after somebody else.
+  /// Those whose turn in the cycle came just after an exchange of theirs was lost: they take it after somebody else. And
+  /// those for whom the whole cycle would be too long to wait.
   std::deque<std::size_t> put_off_;
   std::deque<std::size_t> read_soon_;
   /// One of them had its turn last: the cycle goes on before the next one has.
@@ -304,8 +302,7 @@ private:
 
   // probes
   std::size_t probe_cursor_ = 0;
-  TimePoint next_probe_;
-  std::vector<TimePoint> last_probe_;
+  ProbeAccount probe_account_;
   /// Of the gate at hand.
   bool bare_probes_ = true;
 

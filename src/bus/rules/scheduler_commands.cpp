@@ -134,6 +134,14 @@ void Scheduler::readSoon(std::size_t inverter)
   }
 }
 
+void Scheduler::turnSoon(std::size_t inverter)
+{
+  if (!isPutOff(inverter))
+  {
+    put_off_.push_back(inverter);
+  }
+}
+
 std::size_t Scheduler::readyCommands(TimePoint now) const
 {
   return static_cast<std::size_t>(

@@ -31,6 +31,7 @@ namespace
 using testing::AllOf;
 using testing::Contains;
 using testing::Each;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -205,7 +206,7 @@ TEST(Budget, longestGapContainsTheInterval)
   EXPECT_THAT(ms(bus.budget.longestGap()), AllOf(testing::Ge(796.1), testing::Le(796.9)));
 }
 
-TEST(Budget, printsTheThreeFiguresInOneLine)
+TEST(Budget, printsItsFiguresInOneLine)
 {
   const std::vector<std::string> lines = Planned(1).texts(Level::Ok);
   ASSERT_EQ(lines.size(), 1U);
@@ -214,6 +215,22 @@ TEST(Budget, printsTheThreeFiguresInOneLine)
                                    HasSubstr("gap between two "
                                              "frames"),
                                    HasSubstr("296.")));
+}
+
+// A probe that nobody answers: 8 characters, 2 gaps and 12 ms of silence = 19.812 ms. The turns have 4.5 % of the time, and
+// a first status may take 0.3 s: 440.3 ms for each that is offline.
+TEST(Budget, returnOfAnOfflineInverterTakesATurnOfEveryOther)
+{
+  EXPECT_NEAR(ms(Planned(31).budget.returnTime(6)), 3000.0, 0.1) << "2.942 s: what rule 3.7 says";
+  EXPECT_NEAR(ms(Planned(31).budget.returnTime(15)), 6904.2, 0.5);
+  EXPECT_NEAR(ms(Planned(31).budget.returnTime(31)), 13948.6, 1.0);
+}
+
+TEST(Budget, printsHowLongAnOfflineInverterNeedsToBeBack)
+{
+  EXPECT_THAT(Planned(5).texts(Level::Ok).front(), EndsWith("an inverter that answers again back within 3 s"));
+  EXPECT_THAT(Planned(31).texts(Level::Ok).front(),
+              EndsWith("an inverter that answers again back within 3 s with up to 6 offline, within 13.9 s with all"));
 }
 
 TEST(Budget, saysHowLongAnOfflineInverterMayNeedToBeBackBehindAGateway)

@@ -62,7 +62,7 @@ class Configuration(unittest.TestCase):
 
     def testKeysOfAnotherPlaceOrOfALaterVersion(self):
         self.assertEndsNaming(['command_timeout', 'scan_list or defaults'], command_timeout=1.0)
-        self.assertEndsNaming(['slow_interval', 'later version'], slow_interval=1.0)
+        self.assertEntryEndsNaming(['in_service', 'later version'], in_service=False)
 
     def testWhatLiesBelowTheNameForOthersIsIgnoredWithAWarning(self):
         log = self.logOfADriverThatRuns(rate=10, diagnostic_period=0.5, teleop={'scale': 2.0})

@@ -137,6 +137,14 @@ void Recorder::ended(TimePoint now)
   {
     return;
   }
+  if (exchange.cut)
+  {
+    // What a stop has cut was no try (contract, 8.4).
+    Words& words = inverter.words;
+    words.run_copies -= facts.run && words.run_copies > 0 ? 1 : 0;
+    int& copies = facts.run ? words.run_set_copies : words.set_copies;
+    copies -= facts.set_hertz && copies > 0 ? 1 : 0;
+  }
   inverter.words.shown = false;
   inverter.words.settled = inverter.words.settled && !facts.commands();
   inverter.link.lost_at = facts.expects_reply ? now : inverter.link.lost_at;

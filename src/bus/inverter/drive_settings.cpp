@@ -20,7 +20,7 @@ DriveSettings::DriveSettings(const drive::Drive& drive, std::uint8_t station, bo
 
 void DriveSettings::restart(bool perhaps_another)
 {
-  settings_.restart();
+  settings_.restart(perhaps_another);
   connect_.restart();
   map_.restart();
   if (perhaps_another)

@@ -105,11 +105,11 @@ const Setting* SettingList::next() const
   return found == settings_.end() || !due(*found) ? nullptr : &*found;
 }
 
-void SettingList::restart()
+void SettingList::restart(bool urgent_too)
 {
   for (Setting& setting : settings_)
   {
-    setting.told = Told::NotYet;
+    setting.told = setting.urgent && !urgent_too ? setting.told : Told::NotYet;
     setting.refusals = 0;
   }
   commanded_ = false;

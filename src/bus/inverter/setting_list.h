@@ -47,8 +47,8 @@ public:
   /// Those that the profile names and the drive has. \p drive must outlive it.
   explicit SettingList(const drive::Drive& drive);
 
-  /// All are read again (the drive has come back).
-  void restart();
+  /// All are read again (the drive has come back). \p urgent_too: also those that come before the first status.
+  void restart(bool urgent_too = true);
   /// This one is read again: it was written through the node.
   void reread(const std::string& parameter);
   /// A command of this node is in force: only now can it be seen what commands the drive. Calling it again re-reads it.

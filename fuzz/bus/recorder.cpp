@@ -152,6 +152,9 @@ void Recorder::ended(TimePoint now)
   {
     // Which set-point it has now is unknown.
     inverter.words.set_answered.reset();
+    // What a stop has cut counts as no try (contract, 8.4), and goes again.
+    int& copies = facts.run ? inverter.words.run_set_copies : inverter.words.set_copies;
+    copies -= exchange.cut && copies > 0 ? 1 : 0;
   }
 }
 

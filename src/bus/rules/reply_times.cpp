@@ -15,8 +15,6 @@ constexpr std::size_t REPLIES = 256;
 constexpr int TIMES_THE_LONGEST = 3;
 constexpr std::chrono::milliseconds SHORTEST{ 15 };
 constexpr std::chrono::milliseconds HEARD_MARGIN{ 2 };
-// Contract, 3.8.
-constexpr unsigned REPLIES_UNTIL_SETTLED = 20;
 }  // namespace
 
 ReplyTimes::ReplyTimes() : times_(REPLIES, Duration{ 0 }), heard_(REPLIES, Duration{ 0 })
@@ -30,18 +28,12 @@ void ReplyTimes::replied(Duration time, Duration heard)
   next_ = (next_ + 1) % REPLIES;
   longest_ = *std::max_element(times_.begin(), times_.end());
   latest_heard_ = *std::max_element(heard_.begin(), heard_.end());
-  since_unsettled_ = std::min(since_unsettled_ + 1, REPLIES_UNTIL_SETTLED);
   answers_ = true;
 }
 
 void ReplyTimes::missed()
 {
   answers_ = false;
-}
-
-void ReplyTimes::unsettle()
-{
-  since_unsettled_ = 0;
 }
 
 Duration ReplyTimes::cutAfter(Duration own_delay, Duration adapter) const
@@ -52,11 +44,6 @@ Duration ReplyTimes::cutAfter(Duration own_delay, Duration adapter) const
 Duration ReplyTimes::longest() const
 {
   return longest_;
-}
-
-bool ReplyTimes::settled() const
-{
-  return since_unsettled_ >= REPLIES_UNTIL_SETTLED;
 }
 
 bool ReplyTimes::answers() const

@@ -23,8 +23,6 @@ public:
   void replied(Duration time, Duration heard);
   /// Nothing came, although the full time was waited for.
   void missed();
-  /// The drive may be slower for a while than it ever was: it stores something, starts anew, was away, or was late.
-  void unsettle();
 
   /// Silence after a request's last byte from which on a stop ends the wait. \p own_delay the drive's own (C078, F805),
   /// \p adapter how long an adapter may hold a byte back. Never before the first bytes of a reply have been handed over
@@ -32,8 +30,6 @@ public:
   Duration cutAfter(Duration own_delay, Duration adapter) const;
   /// Among its last 256 replies; 0: it was never heard.
   Duration longest() const;
-  /// 20 replies came since it was unsettled last: what was learned holds.
-  bool settled() const;
   /// The last exchange was answered.
   bool answers() const;
 
@@ -44,7 +40,6 @@ private:
   std::size_t next_ = 0;
   Duration longest_{ 0 };
   Duration latest_heard_{ 0 };
-  unsigned since_unsettled_ = 0;
   bool answers_ = true;
 };
 }  // namespace bus

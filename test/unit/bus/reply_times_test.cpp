@@ -18,7 +18,6 @@ TEST(ReplyTimes, ofADriveThatWasNeverHeardAreZero)
   const ReplyTimes times;
   EXPECT_EQ(times.longest(), Ms(0));
   EXPECT_EQ(times.cutAfter(Ms(0), Ms(0)), Ms(15));
-  EXPECT_FALSE(times.settled());
   EXPECT_TRUE(times.answers()) << "who was not asked has not been silent";
 }
 
@@ -51,21 +50,6 @@ TEST(ReplyTimes, whatIsCollectedOnTheWayHasBegun)
   ReplyTimes times;
   times.replied(Ms(4), Ms(17));
   EXPECT_EQ(times.cutAfter(Ms(0), Ms(0)), Ms(19));
-}
-
-TEST(ReplyTimes, holdAfterTwentyReplies)
-{
-  ReplyTimes times;
-  for (int reply = 0; reply < 19; ++reply)
-  {
-    times.replied(Ms(5), Ms(5));
-  }
-  EXPECT_FALSE(times.settled());
-  times.replied(Ms(5), Ms(5));
-  EXPECT_TRUE(times.settled());
-  times.unsettle();
-  EXPECT_FALSE(times.settled());
-  EXPECT_EQ(times.longest(), Ms(5)) << "the stop's own bound goes on from what was seen";
 }
 
 TEST(ReplyTimes, aDriveAnswersAgainWithItsNextReply)

@@ -22,8 +22,8 @@ constexpr double HZ_APART = 5.5;
 constexpr double RANGE_HZ = 3.5;
 // More than any request and its reply have together in bytes, a read of a trip memory included.
 constexpr double LONGEST_FRAMES = 90.0;
-constexpr double PROBE_FRAME = 24.0;    // characters
-constexpr double REPLY_SLACK_S = 0.03;  // wire::Line waits so much longer for the rest of a reply that has begun
+constexpr double PROBE_FRAME = 24.0;          // characters
+constexpr double REPLY_SLACK_S = 0.03;        // wire::Line waits so much longer for the rest of a reply that has begun
 constexpr double SHORTEST_BLINDNESS_S = 2.0;  // contract, 8.15
 constexpr double TURNAROUND_S = 0.012;        // of a simulated drive at most
 constexpr double USUAL_FRAMES = 24.0;         // characters of a read and its reply

@@ -128,7 +128,11 @@ void UserWatch::stopRequested(TimePoint now, std::optional<std::size_t> index)
     checks_.lockUp(now, one, true);
     checks_.zeros.drop(one);
     checks_.stops.requested(now, one);
-    checks_.cut_waits.asked(now, one);
+    if (checks_.stops.waits(one))
+    {
+      // One of a flood at rest is in no hurry.
+      checks_.cut_waits.asked(now, one);
+    }
     checks_.bounded_velocities.wantedOff();
     checks_.recorder.stopRequested(one);
   }

@@ -143,6 +143,11 @@ bool Refresh::advance()
     // Every read was refused, or every one that shows whether the motor runs: that is no status.
     return false;
   }
+  if (draft_.takeTooOld())
+  {
+    plan_.clear();
+    return true;
+  }
   if (warns(last_.words.monitor, draft_.words().monitor))
   {
     slow_.askForWarning();

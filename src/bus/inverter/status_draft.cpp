@@ -10,9 +10,17 @@ namespace inverter_bus
 {
 namespace bus
 {
+namespace
+{
+// Between the first request of a status and its last reply: a motor starts or stops in that time.
+constexpr double LONG_READING_S = 0.5;
+}  // namespace
+
 void StatusDraft::restart()
 {
+  const bool read_again = read_again_;
   *this = StatusDraft();
+  read_again_ = read_again;
   words_.sent_at = TimePoint::max();
 }
 
@@ -51,6 +59,13 @@ bool StatusDraft::takeFaultDue()
   const bool due = words_.monitor.tripped().value_or(false) && !fault_asked_;
   fault_asked_ = fault_asked_ || due;
   return due;
+}
+
+bool StatusDraft::takeTooOld()
+{
+  const bool old = stamp_ && *stamp_ - words_.sent_at > seconds(LONG_READING_S);
+  read_again_ = old && !read_again_;
+  return read_again_;
 }
 
 const StatusWords& StatusDraft::words() const

@@ -35,6 +35,10 @@ public:
   /// The reason of a trip is still to be read: it belongs in the first status that shows the trip. True once.
   bool takeFaultDue();
 
+  /// Between its reads so much was lost that the first words don't belong to the stamp any more (contract, section 2): all are
+  /// to be read again. Not twice in a row, for on the slowest lines that is how long it takes.
+  bool takeTooOld();
+
   /// What has come so far.
   const StatusWords& words() const;
   /// Enough has come for a status; \p run_needed: one of the reads shows whether the motor runs.
@@ -48,6 +52,7 @@ private:
   /// A run word was read.
   bool run_read_ = false;
   bool fault_asked_ = false;
+  bool read_again_ = false;
 };
 }  // namespace bus
 }  // namespace inverter_bus

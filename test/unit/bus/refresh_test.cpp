@@ -107,6 +107,23 @@ protected:
   std::map<std::string, int> refused_;
 };
 
+TEST_F(Mx2Refresh, wordsThatHaveBecomeOldBeforeTheLastOneCameAreReadAgainOnce)
+{
+  refresh();
+  EXPECT_TRUE(refresh_.takeComplete());
+  leave_.open = false;
+  EXPECT_EQ(exchange(), COILS);
+  time_ += 600;
+  EXPECT_EQ(exchange(), REGISTERS);
+  EXPECT_TRUE(more_);
+  EXPECT_FALSE(refresh_.takeComplete());
+  EXPECT_EQ(exchange(), COILS);
+  time_ += 600;
+  EXPECT_EQ(exchange(), REGISTERS);
+  EXPECT_FALSE(more_) << "on the slowest lines that is how long it takes";
+  EXPECT_TRUE(refresh_.takeComplete());
+}
+
 // --- reads -----------------------------------------------------------------------------------------------------------
 
 TEST_F(Mx2Refresh, firstRefreshIsTwoFastExchanges)

@@ -87,8 +87,6 @@ class MidExchange(unittest.TestCase):
         request, started = self.inFlight()
         self.bench.driver.signal(signal.SIGINT)
         self.assertStoppedNext('SIGINT', request, started)
-        self.assertGreater(self.following(request)[0].time - request.time, 0.9 * PATIENCE_OF_THE_LINE,
-                           'the exchange in flight was awaited')
 
     def testSigtermWhileCallersWait(self):
         """Eight parameter reads behind the exchange in flight: none delays a stop, and each caller gets its answer."""
@@ -152,8 +150,11 @@ class MidExchange(unittest.TestCase):
         return max([os.path.getmtime(path) for path in files], default=0.0)
 
     def holdUpAStop(self):
-        # One that is answered after all: an inverter that goes offline would be worth a file of its own.
-        self.bench.simulate('belt_3 late 0.9')
+        # No stop cuts the wait for what a drive keeps (contract, 8.4). It is answered after all: an inverter that goes offline
+        # would be worth a file of its own.
+        self.bench.simulate('belt_3 late 0.9 function 6 count 1')
+        keeping = threading.Thread(target=self.bench['belt_3'].write_parameter, args=('F002', 9.0, True), daemon=True)
+        keeping.start()
         self.unanswered('3')
         started = time.monotonic()
         calling = threading.Thread(target=self.bench['belt_1'].stop, daemon=True)
@@ -166,6 +167,7 @@ class MidExchange(unittest.TestCase):
         self.bench.driver.signal(signal.SIGCONT)
         wait_for(lambda: self.bench.real('belt_1')['run_coil'] == '0', 'the stop')
         calling.join(10.0)
+        keeping.join(10.0)
         shown = self.bench.bus_status
         wait_for(lambda: self.bench.bus_status is not shown, 'a new bus_status')
 

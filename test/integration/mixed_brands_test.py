@@ -438,7 +438,7 @@ class BlockRead(Brands):
         # Contract, 8.2: what is settled is read, and nothing is written.
         self.only('pump_1', '1', block, {combined, direct})
         self.reach('pump_1', 25.0, InverterStatus.DIRECTION_FORWARD)
-        frame = [frame for frame in self.bench.frames(2000) if frame.station == '1' and frame.sender == 'master' and
+        frame = [frame for frame in self.bench.frames() if frame.station == '1' and frame.sender == 'master' and
                  frame.bytes[1] == 0x17][-1]
         # FA00 = C400 and FA01 = 2500 (25.00 Hz): the new words, and nothing else.
         self.assertTrue(frame.text.startswith('01 17 18 75 00 05 18 70 00 02 04 C4 00 09 C4'), frame.text)

@@ -190,6 +190,48 @@ scan_list:
   EXPECT_FALSE(bus.status(0).locked);
 }
 
+// Seed 1317. The commands of the others go first, and a refresh of the pump between them.
+TEST(Coincidences, aVelocityThatWasAcceptedBeforeARestartWasNoticedStartsNothingAfterwards)
+{
+  unsigned cancelled = 0;
+  for (double phase = 0.0; phase < 1.2; phase += 0.02)
+  {
+    VirtualBus bus(R"(
+port: /dev/virtual
+baud_rate: 9600
+parity: even
+defaults: {command_timeout: 0, drive: toshiba_vfs15}
+scan_list:
+  - {name: fan_1, node: 1}
+  - {name: fan_2, node: 2}
+  - {name: fan_3, node: 3}
+  - {name: pump, node: 4}
+)");
+    bus.settleIn();
+    bus.run(3.0);
+    switchOffAndOn(bus, "pump");
+    bus.clearFrames();
+    bus.run(1.0 + phase);
+    // What the pump is is asked as soon as its restart is noticed.
+    const bool noticed = bus.count("04 03 FB 07 00 01") > 0;
+    for (const std::size_t index : { 0U, 1U, 2U, 3U })
+    {
+      bus.command(index, 20.0);
+    }
+    bus.run(3.0);
+    const std::vector<std::string> requests = bus.requests();
+    const auto run = std::find(requests.begin(), requests.end(), "04 06 FA 00 C4 00");
+    const auto marker = std::find(requests.begin(), requests.end(), "04 06 FA 87 00 01");
+    ASSERT_NE(marker, requests.end()) << phase;
+    if (!noticed)
+    {
+      EXPECT_TRUE(run == requests.end() || run < marker) << phase;
+      cancelled += run == requests.end() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(cancelled, 0U);
+}
+
 TEST(Coincidences, aRestartAfterTheRunIsFoundOutByTheRunThatIsGone)
 {
   VirtualBus bus(R"(

@@ -169,6 +169,7 @@ void Inverter::noteExchange(const wire::Reply& reply)
   }
   // A short power cut may be behind it.
   refresh.slow().suspectRestart();
+  refresh.draft().lost();
   map_use.lost();
   if (drive.wears("frequency"))
   {
@@ -312,7 +313,9 @@ std::string Inverter::noteRestart(const drive::Monitor& words, TimePoint sent_at
   block_transfer.tryAgain();
   map_use.restart();
   refresh.useBlock(std::nullopt);
-  const bool runs_on = movement.runPossible() && !stop.pending();
+  // Nor does a velocity that was accepted before start it afterwards: until the drive has reported what it is, it is locked.
+  const bool moves = movement.target() && !movement.target()->zero;
+  const bool runs_on = (movement.runPossible() || moves) && !stop.pending();
   return runs_on ? "the drive has restarted (switched off and on, or reset)" : "";
 }
 

@@ -61,10 +61,15 @@ bool StatusDraft::takeFaultDue()
   return due;
 }
 
+void StatusDraft::lost()
+{
+  lost_ = true;
+}
+
 bool StatusDraft::takeTooOld()
 {
   const bool old = stamp_ && *stamp_ - words_.sent_at > seconds(LONG_READING_S);
-  read_again_ = old && !read_again_;
+  read_again_ = lost_ && old && !read_again_;
   return read_again_;
 }
 

@@ -35,8 +35,10 @@ public:
   /// The reason of a trip is still to be read: it belongs in the first status that shows the trip. True once.
   bool takeFaultDue();
 
-  /// Between its reads so much was lost that the first words don't belong to the stamp any more (contract, section 2): all are
-  /// to be read again. Not twice in a row, for on the slowest lines that is how long it takes.
+  /// An exchange with this drive was lost meanwhile.
+  void lost();
+  /// So much time was lost between its reads that the first words don't belong to the stamp any more (contract, section 2): all
+  /// are to be read again. Not twice in a row, for on the slowest lines that is how long it takes.
   bool takeTooOld();
 
   /// What has come so far.
@@ -52,6 +54,7 @@ private:
   /// A run word was read.
   bool run_read_ = false;
   bool fault_asked_ = false;
+  bool lost_ = false;
   bool read_again_ = false;
 };
 }  // namespace bus

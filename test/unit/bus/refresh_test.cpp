@@ -113,14 +113,28 @@ TEST_F(Mx2Refresh, wordsThatHaveBecomeOldBeforeTheLastOneCameAreReadAgainOnce)
   EXPECT_TRUE(refresh_.takeComplete());
   leave_.open = false;
   EXPECT_EQ(exchange(), COILS);
+  refresh_.draft().lost();
   time_ += 600;
   EXPECT_EQ(exchange(), REGISTERS);
   EXPECT_TRUE(more_);
   EXPECT_FALSE(refresh_.takeComplete());
   EXPECT_EQ(exchange(), COILS);
+  refresh_.draft().lost();
   time_ += 600;
   EXPECT_EQ(exchange(), REGISTERS);
   EXPECT_FALSE(more_) << "on the slowest lines that is how long it takes";
+  EXPECT_TRUE(refresh_.takeComplete());
+}
+
+TEST_F(Mx2Refresh, wordsThatCameSlowlyButWithoutALossAreAStatus)
+{
+  refresh();
+  EXPECT_TRUE(refresh_.takeComplete());
+  leave_.open = false;
+  EXPECT_EQ(exchange(), COILS);
+  time_ += 600;
+  EXPECT_EQ(exchange(), REGISTERS);
+  EXPECT_FALSE(more_);
   EXPECT_TRUE(refresh_.takeComplete());
 }
 

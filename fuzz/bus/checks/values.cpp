@@ -21,7 +21,8 @@ constexpr std::size_t READS_IN_QUESTION = 3;  // a reset's or a probe's read may
 constexpr double KEPT_SAMPLES_S = 120.0;
 constexpr double OLDEST_SLOW_VALUE_S = 10.0;  // contract, 8.3: in any case, and so many periods
 constexpr double OLDEST_SLOW_VALUE_PERIODS = 2.5;
-constexpr double LONG_TURNING_S = 0.5;
+constexpr double LONG_TURNING_S =
+    1.5;  // beside changing velocities of eight drives at 9600 baud a status is read in 0.6 s
 constexpr double TORQUE_TOLERANCE = 1.5;  // [%] of rated: drives report whole percents
 constexpr double MEMORY_OF_LATE_S = 2.0;  // the longest bar, and the exchange that it lets through
 }  // namespace

@@ -192,7 +192,11 @@ TEST_P(ToldLocks, untilTheDriveHasToldAfterARestartWhatItIs)
   start(VFS15);
   bus_->settleIn();
   bus_->run(8.0);
+  bus_->clearFrames();
   bus_->world("pump power_cycle 0.02");
+  // Its restart marker shows it.
+  ASSERT_TRUE(bus_->runUntil(8.0, [&] { return bus_->count("01 03 FA 87 00 01") > 0; }));
+  command();
   commandFor(8.0);
   EXPECT_THAT(refusals_, Contains(HasSubstr("has not reported yet what it is")));
 }

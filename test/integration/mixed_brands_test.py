@@ -437,8 +437,8 @@ class BlockRead(Brands):
         self.reach('pump_1', 20.0, InverterStatus.DIRECTION_FORWARD)
         # Contract, 8.2: what is settled is read, and nothing is written.
         self.only('pump_1', '1', block, {combined, direct})
-        # FA00 = C400 and FA01 = 2500 or 3000 (25.00 and 30.00 Hz): the new words, and nothing else. Where a slow value is
-        # the next read, they go without it.
+        # FA00 = C400 and FA01 = 2500 or 3000 (25.00 and 30.00 Hz): the new words, and nothing else. Where a slow value
+        # is the next read, they go without it.
         frames = []
         for velocity in (25.0, 30.0) * 10:
             self.reach('pump_1', velocity, InverterStatus.DIRECTION_FORWARD)
@@ -447,7 +447,8 @@ class BlockRead(Brands):
             if frames:
                 break
         self.assertTrue(frames, self.requests('1'))
-        self.assertIn(frames[-1].text[:44], ['01 17 18 75 00 05 18 70 00 02 04 C4 00 ' + words for words in ('09 C4', '0B B8')])
+        self.assertIn(frames[-1].text[:44],
+                      ['01 17 18 75 00 05 18 70 00 02 04 C4 00 ' + words for words in ('09 C4', '0B B8')])
         status = self.bench['pump_1'].status
         self.assertTrue(status.known & InverterStatus.KNOWN_TORQUE)
         self.assertTrue(status.known & InverterStatus.KNOWN_OUTPUT_VOLTAGE)

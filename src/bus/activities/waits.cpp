@@ -8,12 +8,6 @@ namespace inverter_bus
 {
 namespace bus
 {
-namespace
-{
-// Contract, 3.3: from then on another exchange goes between two tries of a stop.
-constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
-}  // namespace
-
 Waits::Waits(BusState& bus, Stops& stops, const Velocities& velocities, const Probes& probes)
   : bus_(bus), stops_(stops), velocities_(velocities), probes_(probes)
 {

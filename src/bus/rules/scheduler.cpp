@@ -11,8 +11,6 @@ namespace bus
 {
 namespace
 {
-// Contract, rule 3.3: three attempts at once, then every second exchange at most.
-constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
 // A flood of stops: after so many exchanges, a read-back or a needless stop alternates with exchanges of another kind.
 constexpr unsigned MOST_STOPS_IN_A_ROW = 8;
 // Other exchanges between two frames of a stop that insists.

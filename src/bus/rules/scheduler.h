@@ -27,6 +27,9 @@ enum class CommandKind
 
 using CommandId = std::uint64_t;
 
+/// Contract, rule 3.3: a stop is tried so often at once, then as every second exchange at most.
+constexpr unsigned STOP_ATTEMPTS_AT_ONCE = 3;
+
 /// A command that waits for its next exchange.
 struct WaitingCommand
 {
